@@ -98,6 +98,8 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "obj" | "stl" | "ply" | "off" | "vtk" => files("mesh/tests/files", name),
         "gltf" => [files("mesh/tests/files", "gltf"), files("mesh/tests/files", "glb")].concat(),
         "gmsh" => files("mesh/tests/files", "msh"),
+        "medit" => files("mesh/tests/files", "mesh"),
+        "abaqus" => files("mesh/tests/files", "inp"),
         "vtu" => [files("mesh/tests/files", "vtu"), files("mesh/tests/files", "vtp")].concat(),
         "font" => files("assets/fonts", "otf"),
         "states" => vec![simulated("states.npz")],

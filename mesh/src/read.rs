@@ -3,19 +3,24 @@
 //! Each format is one file, which makes [`Cells`] of bytes: points and cells as they are listed. [`Cells::mesh`] makes a [`Mesh`] of
 //! them, in the same way for all formats. Numbers in a file are never trusted: lists grow as their entries are found.
 
+mod abaqus;
 mod cells;
 mod content;
+mod copies;
 mod gltf;
 mod gmsh;
 mod kinds;
+mod medit;
 mod obj;
 mod off;
+mod order;
 mod others;
 mod ply;
 mod polygon;
 mod pvd;
 mod source;
 mod stl;
+mod tags;
 mod vtk;
 mod vtu;
 
@@ -33,6 +38,16 @@ pub enum Mesh {
     Volume(Volume),
     /// A surface, which is filled.
     Surface(Surface),
+}
+
+impl Mesh {
+    /// What is left out of the file or not read, each as the predicate of a sentence about it.
+    pub fn notes(&self) -> &[String] {
+        match self {
+            Self::Volume(volume) => &volume.notes,
+            Self::Surface(surface) => &surface.notes,
+        }
+    }
 }
 
 /// The format of a mesh file.
@@ -54,12 +69,18 @@ pub enum Format {
     Vtk,
     /// VTK's unstructured grids and polygons in XML (`.vtu`, `.vtp`).
     Vtu,
+    /// INRIA's Medit (`.mesh`) as text.
+    Medit,
+    /// Abaqus and CalculiX (`.inp`).
+    Abaqus,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 8] =
-        [Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::Gltf, Self::Gmsh, Self::Vtk, Self::Vtu];
+    pub const ALL: [Self; 10] = {
+        use Format::*;
+        [Obj, Stl, Ply, Off, Gltf, Gmsh, Vtk, Vtu, Medit, Abaqus]
+    };
 
     /// The endings of its files, without the dot.
     pub fn endings(self) -> &'static [&'static str] {
@@ -72,6 +93,8 @@ impl Format {
             Self::Gmsh => &["msh"],
             Self::Vtk => &["vtk"],
             Self::Vtu => &["vtu", "vtp"],
+            Self::Medit => &["mesh"],
+            Self::Abaqus => &["inp"],
         }
     }
 
@@ -154,5 +177,7 @@ pub fn read_cells_with(
         Format::Gltf => gltf::read(bytes, limits, beside),
         Format::Vtk => vtk::read(bytes, limits),
         Format::Vtu => vtu::read(bytes, limits),
+        Format::Medit => medit::read(bytes, limits),
+        Format::Abaqus => abaqus::read(bytes, limits),
     }
 }

@@ -19,6 +19,8 @@ pub struct Surface {
     pub groups: Vec<Group>,
     /// The number of points of the file without coordinates, which no triangle used and which were left out.
     pub lost: usize,
+    /// What is left out of the file or not read, each as the predicate of a sentence about it.
+    pub notes: Vec<String>,
 }
 
 /// What is wrong with a surface, by number.
@@ -214,7 +216,7 @@ impl Surface {
         }
         flaws.degenerate = self.triangles.len() - triangles.len();
         let groups = self.groups.iter().map(|group| group.renamed(&first)).collect();
-        Self { points: self.points.clone(), triangles, groups, lost: 0 }.compact()
+        Self { points: self.points.clone(), triangles, groups, lost: 0, notes: self.notes.clone() }.compact()
     }
 
     /// The surface with those points only that belong to a triangle, in the same order.

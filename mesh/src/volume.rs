@@ -20,6 +20,8 @@ pub struct Volume {
     pub groups: Vec<Group>,
     /// The number of cells that were turned over in the file.
     pub turned: usize,
+    /// What is left out of the file or not read, each as the predicate of a sentence about it.
+    pub notes: Vec<String>,
 }
 
 /// A set of points with a name.

@@ -24,7 +24,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 24] = [
+pub const READERS: [Reader; 26] = [
     Reader { name: "scene", read: scene },
     Reader { name: "setting", read: setting },
     Reader { name: "figure", read: figure },
@@ -37,6 +37,8 @@ pub const READERS: [Reader; 24] = [
     Reader { name: "gmsh", read: |bytes| mesh(bytes, Format::Gmsh) },
     Reader { name: "vtk", read: |bytes| mesh(bytes, Format::Vtk) },
     Reader { name: "vtu", read: |bytes| mesh(bytes, Format::Vtu) },
+    Reader { name: "medit", read: |bytes| mesh(bytes, Format::Medit) },
+    Reader { name: "abaqus", read: |bytes| mesh(bytes, Format::Abaqus) },
     Reader { name: "font", read: font },
     Reader { name: "states", read: states },
     Reader { name: "recording", read: recording },

@@ -340,6 +340,8 @@ impl Moment {
 /// Appends the points and cells of another file.
 fn append(all: &mut Cells, other: Cells) {
     all.corners.append(&other.corners, all.points.len() as u32);
+    all.copies.append(&other.copies, all.points.len() as u32);
+    all.notes.extend(other.notes);
     all.kinds.extend(other.kinds);
     all.points.extend(other.points);
     let vectors = [(&mut all.velocities, other.velocities), (&mut all.displacements, other.displacements)];

@@ -272,6 +272,26 @@ fn says_what_a_mesh_is() {
 }
 
 #[test]
+fn says_what_is_left_out_of_a_mesh() {
+    let place = Place::with_small();
+    let files = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("mesh/tests/files");
+    place.write("kinds.inp", &std::fs::read(files.join("kinds.inp")).expect("a file"));
+    let ran = place.run("check kinds.inp").good();
+    for word in [
+        "23 points, 1 tetrahedron",
+        "volume 2,",
+        "note       has elements that are not read: 2 of the type SPRINGA",
+        "group      \"Left end\": 3 points",
+    ] {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    let document = place.run("check kinds.inp --json").json();
+    let mesh = &document["meshes"][0]["mesh"];
+    assert_eq!(mesh["notes"][0], "has elements that are not read: 2 of the type SPRINGA");
+    assert_eq!(mesh["cells"]["groups"].as_array().map(Vec::len), Some(9));
+}
+
+#[test]
 fn says_which_distance_closes_a_surface_or_joins_cells() {
     let place = Place::with_small();
     let files = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("mesh/tests/files");

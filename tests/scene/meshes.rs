@@ -372,3 +372,30 @@ fn data_of_a_gltf_file_is_beside_it() {
     let outside = gltf.replace("my%20box.bin", "../scene.toml");
     wrong(&scene, &[("a.gltf", outside.as_bytes())], &["outside of its folder", "beside it"]);
 }
+
+#[test]
+fn what_is_left_out_of_cells_is_told() {
+    let flat = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n\
+                0 0 0 1 0 0 0 1 0 0 0 1 1 1 0\nCELLS 2 10\n4 0 1 2 3\n4 0 1 4 2\nCELL_TYPES 2\n10 10\n";
+    let scene = loaded(&with("flat.vtk", ""), &[("flat.vtk", flat)]);
+    let expected = "`flat.vtk` has a cell without volume, which is left out: cell 1, counted from 0, with the points 0, 1, 4, 2 \n";
+    assert_eq!(messages(&scene), expected);
+    assert_eq!((scene.bodies[0].body.len(), scene.bodies[0].body.elements.len()), (4, 1));
+    let scene = load(&with("kinds.inp", ""), &[("kinds.inp", &field("kinds.inp"))]).unwrap();
+    let notes = messages(&scene);
+    assert!(notes.starts_with("`kinds.inp` has elements that are not read: 2 of the type SPRINGA \n"), "{notes}");
+}
+
+#[test]
+fn sets_of_abaqus_and_references_of_medit_are_groups() {
+    for (name, group, nodes) in [
+        ("assembly.inp", "held", 3),
+        ("assembly.inp", "far", 4),
+        ("kinds.mesh", "volume 2", 14),
+        ("kinds.mesh", "point 5", 1),
+    ] {
+        let text = with(name, "") + &format!("[[hold]]\nnodes = '{group}'\n");
+        let scene = load(&text, &[(name, &field(name))]).unwrap();
+        assert_eq!(scene.runs[0].grips[0].nodes.len(), nodes, "{name}: {group}");
+    }
+}

@@ -1,14 +1,14 @@
 //! Points and cells as a file lists them, and the mesh that they make.
 
+use super::order::Parts;
 use super::polygon::Triangulation;
 use super::source::Source;
 use super::{Format, Limits, Mesh, ReadError, Surface, Volume};
 use crate::Group;
 use crate::weld::joined;
 use glam::DVec3;
-use localshape_sim::geometry::volume_by_faces;
 use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// The kind of a cell in a file.
@@ -72,6 +72,10 @@ pub struct Cells {
     pub displacements: Option<Vec<DVec3>>,
     /// The number of points of the file without coordinates, which no cell names and which are left out.
     pub lost: usize,
+    /// Single points, and the corners of further cells, that are copies of those in other pieces of a parallel run.
+    pub copies: IndexLists,
+    /// What is left out of the file or not read, each as the predicate of a sentence about it.
+    pub notes: Vec<String>,
 }
 
 /// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
@@ -83,11 +87,21 @@ pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
     AROUND.map(|place| corners[place])
 }
 
+/// A dimension and the number of a set of points.
+type Key = (i64, i64);
+
 /// Cells while they are read.
 #[derive(Debug)]
 pub(super) struct Builder<'l> {
-    cells: Cells,
+    pub(super) cells: Cells,
+    /// Whether the next cells are copies of cells in other pieces, and no cells themselves.
+    pub(super) is_copy: bool,
     groups: BTreeMap<String, Vec<u32>>,
+    /// Sets of points by their numbers, and the names of some of them.
+    numbered: BTreeMap<Key, Vec<u32>>,
+    pub(super) set_names: HashMap<Key, String>,
+    /// The number of points in all sets.
+    grouped: usize,
     limits: &'l Limits,
     /// The highest index of a corner, and the place where it was found. Points may follow the cells that name them.
     highest: (u32, usize),
@@ -101,8 +115,9 @@ pub(super) struct Builder<'l> {
 
 impl<'l> Builder<'l> {
     pub(super) fn new(limits: &'l Limits) -> Self {
-        let (cells, groups, lost, names, named) = Default::default();
-        Self { cells, groups, limits, highest: (0, 0), lost, names, named }
+        let (cells, is_copy, groups, numbered, set_names, grouped) = Default::default();
+        let (highest, lost, names, named) = Default::default();
+        Self { cells, is_copy, groups, numbered, set_names, grouped, limits, highest, lost, names, named }
     }
 
     /// The number of points so far.
@@ -168,12 +183,27 @@ impl<'l> Builder<'l> {
         if corners.is_empty() {
             return Ok(());
         }
-        if self.cells.corners.indices().len() + corners.len() > most {
+        let Cells { corners: own, copies, .. } = &mut self.cells;
+        if own.indices().len() + copies.indices().len() + corners.len() > most {
             return Err(too_many(&format!("more than {most}"), "corners", most));
+        }
+        if self.is_copy {
+            copies.push(corners);
+            return Ok(());
         }
         self.cells.kinds.push(kind);
         self.cells.corners.push(corners);
         Ok(())
+    }
+
+    /// Adds a cell whose corners, if it is a hexahedron, are listed around one side and then around the other.
+    pub(super) fn around(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
+        match *corners {
+            [a, b, c, d, e, f, g, h] if kind == CellKind::Hexahedron => {
+                self.cell(kind, &along(&[a, b, c, d, e, f, g, h]))
+            }
+            _ => self.cell(kind, corners),
+        }
     }
 
     /// Adds a polygon, or what is left of one with less than three corners.
@@ -210,6 +240,13 @@ impl<'l> Builder<'l> {
         self.groups.entry(name).or_default().extend(points);
     }
 
+    /// Adds points to the set of a number, which names it unless `set_names` does.
+    pub(super) fn number(&mut self, set: Key, points: &[u32]) -> Result<(), ReadError> {
+        spend(&mut self.grouped, points.len(), self.limits)?;
+        self.numbered.entry(set).or_default().extend(points);
+        Ok(())
+    }
+
     /// Gives cells from now on other names of a kind, 0 to 2. Their points become groups.
     pub(super) fn name(&mut self, kind: usize, names: Vec<String>) {
         let now = self.cells.kinds.len();
@@ -234,7 +271,15 @@ impl<'l> Builder<'l> {
         let kept = Used::numbered(new);
         cells.lost = self.lost.len();
         cells.points = kept.of(&cells.points);
+        cells.velocities = cells.velocities.take().map(|all| kept.of(&all));
         cells.rename(&kept.new);
+        let renamed = |list: &[u32]| -> Vec<u32> { list.iter().map(|&point| kept.new[point as usize]).collect() };
+        let copies = std::mem::take(&mut cells.copies);
+        copies.iter().map(renamed).filter(|list| !list.contains(&NONE)).for_each(|list| cells.copies.push(&list));
+        for points in self.groups.values_mut() {
+            *points = renamed(points);
+            points.retain(|&point| point != NONE);
+        }
         Ok(())
     }
 
@@ -250,6 +295,11 @@ impl<'l> Builder<'l> {
                 }
             };
             return Err(ReadError::damaged(message));
+        }
+        for (set, points) in std::mem::take(&mut self.numbered) {
+            let kind = ["point", "curve", "surface", "volume"].get(set.0 as usize).copied().unwrap_or("group");
+            let name = self.set_names.get(&set).cloned().unwrap_or_else(|| format!("{kind} {}", set.1));
+            self.group(name, points);
         }
         // Some pieces may have none.
         self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);
@@ -271,13 +321,21 @@ impl<'l> Builder<'l> {
     }
 }
 
+/// Refuses sets with very many members.
+pub(super) fn spend(spent: &mut usize, members: usize, limits: &Limits) -> Result<(), ReadError> {
+    let most = limits.corners.saturating_mul(4);
+    *spent = spent.saturating_add(members);
+    if *spent > most {
+        let message = format!("has groups with more than {most} nodes");
+        return Err(ReadError::new(message, "put each element into one group or few"));
+    }
+    Ok(())
+}
+
 pub(super) fn too_many(found: &str, what: &str, most: usize) -> ReadError {
     let message = format!("has {found} {what}; at most {most} are read");
     ReadError::new(message, "make the mesh coarser, with a decimation of the program that wrote it")
 }
-
-/// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
-const FLAT: f64 = 1e-12;
 
 impl Cells {
     /// The mesh of a file of a format. In formats of cells it is a volume of the cells with a volume; else, if all faces lie in a plane
@@ -304,7 +362,7 @@ impl Cells {
     }
 
     /// Gives the corners of all cells other indices.
-    fn rename(&mut self, new: &[u32]) {
+    pub(super) fn rename(&mut self, new: &[u32]) {
         let renamed: Vec<u32> = self.corners.indices().iter().map(|&corner| new[corner as usize]).collect();
         self.corners = (0..self.corners.len()).map(|at| &renamed[self.corners.range(at)]).collect();
     }
@@ -313,10 +371,11 @@ impl Cells {
     ///
     /// # Errors
     /// If there are no faces.
-    fn faces(self) -> Result<Mesh, ReadError> {
+    fn faces(mut self) -> Result<Mesh, ReadError> {
+        self.join();
         let triangles = self.triangles()?;
-        let Self { points, groups, lost, .. } = self;
-        Ok(Mesh::Surface(Surface { points, triangles, groups, lost }.compact()))
+        let Self { points, groups, lost, notes, .. } = self;
+        Ok(Mesh::Surface(Surface { points, triangles, groups, lost, notes }.compact()))
     }
 
     /// All that could be elements of one kind: the cells with a volume; else the faces, in space as triangles; else the lines. Points
@@ -324,7 +383,8 @@ impl Cells {
     ///
     /// # Errors
     /// If there is nothing of it, or cells without area or volume.
-    pub fn elements(self, dimension: Dimension) -> Result<Volume, ReadError> {
+    pub fn elements(mut self, dimension: Dimension) -> Result<Volume, ReadError> {
+        self.join();
         if self.has(CellKind::is_solid) {
             return self.solids();
         }
@@ -391,13 +451,18 @@ impl Cells {
     }
 
     /// A volume of some lists of points, with only their points.
-    fn volume(self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
+    pub(super) fn volume(mut self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
         let used = Used::new(self.points.len(), lists.indices());
         let renamed: Vec<u32> = lists.indices().iter().map(|&corner| used.new[corner as usize]).collect();
         let cells = (0..lists.len()).map(|at| &renamed[lists.range(at)]).collect();
         let groups = used.groups(&self.groups);
         let (points, places) = (used.of(&self.points), used.of(&(0..self.points.len() as u32).collect::<Vec<_>>()));
-        Volume { dimension, points, places, solids, cells, groups, turned }
+        match self.lost {
+            0 => {}
+            1 => self.notes.push("has a point without coordinates, which is left out".to_owned()),
+            lost => self.notes.push(format!("has {lost} points without coordinates, which are left out")),
+        }
+        Volume { dimension, points, places, solids, cells, groups, turned, notes: self.notes }
     }
 
     /// The volume in space of all cells that have one.
@@ -432,106 +497,6 @@ impl Cells {
             parts.add(at, ElementKind::Polygon, &mut cell, &self.points);
         }
         parts.volume(self, Solids::Ordered)
-    }
-}
-
-/// The elements of a volume.
-struct Parts {
-    dimension: Dimension,
-    cells: IndexLists,
-    turned: usize,
-    /// Cells without area or volume: how many, and the first in the file.
-    flat: (usize, usize),
-    known: HashSet<[u32; 8]>,
-}
-
-impl Parts {
-    /// The parts of a volume with about this number of cells.
-    fn new(dimension: Dimension, cells: usize) -> Self {
-        Self { dimension, cells: IndexLists::default(), turned: 0, flat: (0, 0), known: HashSet::with_capacity(cells) }
-    }
-
-    /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group.
-    fn add(&mut self, at: usize, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) {
-        let mut sorted = cell.to_vec();
-        sorted.sort_unstable();
-        let least = if self.dimension == Dimension::Plane { 3 } else { 4 };
-        if sorted.len() <= 8 {
-            let mut key = [u32::MAX; 8];
-            key[..sorted.len()].copy_from_slice(&sorted);
-            if !self.known.insert(key) {
-                return;
-            }
-        }
-        let mut is_flat = cell.len() < least || sorted.windows(2).any(|pair| pair[0] == pair[1]);
-        if !is_flat && kind != ElementKind::Other {
-            is_flat = !self.order(kind, cell, points);
-        }
-        if is_flat {
-            self.flat = (self.flat.0 + 1, if self.flat.0 == 0 { at } else { self.flat.1 });
-            return;
-        }
-        self.cells.push(cell);
-    }
-
-    /// Puts the corners of a cell into the expected order. Returns false if it has no area or volume.
-    fn order(&mut self, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) -> bool {
-        let (mut low, mut high) = (points[cell[0] as usize], points[cell[0] as usize]);
-        cell.iter().for_each(|&corner| {
-            low = low.min(points[corner as usize]);
-            high = high.max(points[corner as usize]);
-        });
-        let size = (high - low).max_element();
-        let whole = if kind == ElementKind::Polygon { size * size } else { size * size * size };
-        let mut measure = volume_by_faces(kind, cell, points);
-        // A cell that is listed along its axes where it should be listed around, or the other way, crosses itself: it is nearly flat.
-        let other = match (kind, &*cell) {
-            (ElementKind::Hexahedron, &[a, b, c, d, e, f, g, h]) => along(&[a, b, c, d, e, f, g, h]).to_vec(),
-            (ElementKind::Polygon, &[a, b, c, d]) => vec![a, b, d, c],
-            _ => Vec::new(),
-        };
-        let mut is_other = false;
-        if !other.is_empty() {
-            let by_other = volume_by_faces(kind, &other, points);
-            if by_other.abs() > (2.0 * measure.abs()).max(FLAT * whole) {
-                (measure, is_other) = (by_other, true);
-                cell.copy_from_slice(&other);
-            }
-        }
-        if measure.abs() <= FLAT * whole {
-            return false;
-        }
-        if measure < 0.0 {
-            turn(kind, cell);
-        }
-        // Programs list wedges from either triangle: Gmsh from the lower, VTK from the upper.
-        self.turned += usize::from(is_other || measure < 0.0 && kind != ElementKind::Wedge);
-        true
-    }
-
-    fn volume(self, cells: Cells, solids: Solids) -> Result<Volume, ReadError> {
-        let (flat, first) = self.flat;
-        if flat > 0 {
-            let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
-            let shown: Vec<String> = cells.corners[first].iter().take(8).map(u32::to_string).collect();
-            let corners = format!("cell {first}, counted from 0, with the points {}", shown.join(", "));
-            let message = match flat {
-                1 => format!("has a cell without {what}: {corners}"),
-                _ => format!("has {flat} cells without {what}; the first is {corners}"),
-            };
-            return Err(ReadError::new(message, "mesh the object again, or remove these cells"));
-        }
-        Ok(cells.volume(self.dimension, solids, &self.cells, self.turned))
-    }
-}
-
-/// Turns a cell over.
-fn turn(kind: ElementKind, cell: &mut [u32]) {
-    match kind {
-        ElementKind::Tetrahedron => cell.swap(1, 2),
-        ElementKind::Pyramid => cell.swap(1, 3),
-        ElementKind::Wedge | ElementKind::Hexahedron => cell.rotate_left(cell.len() / 2),
-        _ => cell.reverse(),
     }
 }
 

@@ -35,6 +35,8 @@ pub(super) fn name(format: Format) -> &'static str {
         Format::Gmsh => "a Gmsh file",
         Format::Vtk => "a legacy VTK file",
         Format::Vtu => "a VTU file",
+        Format::Medit => "a Medit file",
+        Format::Abaqus => "an Abaqus file",
     }
 }
 
@@ -68,7 +70,9 @@ fn found(bytes: &[u8]) -> Option<Found> {
         () if begins(b"<?xml") || begins(b"<svg") => Other("another XML file", OTHER),
         () if head.starts_with(b"glTF") => Found::Format(Format::Gltf),
         () if begins(b"{") => Found::Format(Format::Gltf),
-        () if begins(b"$meshformat") || begins(b"$nod") => Found::Format(Format::Gmsh),
+        () if begins(b"meshversionformatted") => Found::Format(Format::Medit),
+        () if begins(b"*heading") || begins(b"*node") => Found::Format(Format::Abaqus),
+        () if begins(b"$meshformat") || begins(b"$nod") || begins(b"$comments") => Found::Format(Format::Gmsh),
         () if begins(b"# vtk") => Found::Format(Format::Vtk),
         () if word(b"ply") => Found::Format(Format::Ply),
         () if [&b"off"[..], b"coff", b"noff", b"stoff", b"cnoff"].iter().any(|start| word(start)) => {

@@ -2,11 +2,11 @@
 //!
 //! Named or numbered physical groups become groups of points. Of elements of higher order the corners are read, which Gmsh lists first.
 
-use super::cells::{Builder, CellKind, along};
+use super::cells::{Builder, CellKind};
 use super::source::{Coding, DAMAGED, Scalar, Source, quoted};
+use super::tags::Tags;
 use super::{Cells, Format, Limits, ReadError, content};
-use glam::DVec3;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::rc::Rc;
 
 /// A dimension and the number of an entity or of a group.
@@ -19,21 +19,20 @@ struct Reader<'b, 'l> {
     coding: Coding,
     /// The type of counts in the version 4.1.
     size: Scalar,
-    /// The names of physical groups.
-    names: HashMap<Key, String>,
     /// The physical groups of each entity.
     physical: HashMap<Key, Rc<[i64]>>,
     tags: Tags,
-    /// The points of each physical group.
-    groups: BTreeMap<Key, Vec<u32>>,
-    /// The points in all groups.
-    grouped: usize,
-    limits: &'l Limits,
 }
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
-    if source.word() != b"$MeshFormat" {
+    let mut word = source.word();
+    while word == b"$Comments" {
+        skip(&mut source, b"Comments")?;
+        source.word();
+        word = source.word();
+    }
+    if word != b"$MeshFormat" {
         return Err(content::no_beginning(bytes, Format::Gmsh, "`$MeshFormat`"));
     }
     let version = source.word();
@@ -61,18 +60,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         },
         _ => return Err(source.found(&quoted(kind), source.at.saturating_sub(1), "0 for text or 1 for binary")),
     };
-    let mut reader = Reader {
-        source,
-        builder: Builder::new(limits),
-        coding,
-        size,
-        names: HashMap::new(),
-        physical: HashMap::new(),
-        tags: Tags::default(),
-        groups: BTreeMap::new(),
-        grouped: 0,
-        limits,
-    };
+    let mut reader =
+        Reader { source, builder: Builder::new(limits), coding, size, physical: HashMap::new(), tags: Tags::default() };
     reader.end(b"MeshFormat")?;
     while !reader.source.is_done() {
         let word = reader.source.word();
@@ -82,25 +71,26 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         reader.source.line();
         match (section, is_old) {
             (b"PhysicalNames", _) => reader.physical_names()?,
-            (b"Entities", false) => reader.with_coding(Reader::entities)?,
+            (b"Entities", false) => reader.with_coding(|reader| reader.entities(false))?,
+            (b"PartitionedEntities", false) => reader.with_coding(|reader| reader.entities(true))?,
             (b"Nodes", true) => reader.old_nodes()?,
             (b"Nodes", false) => reader.with_coding(Reader::nodes)?,
             (b"Elements", true) => reader.old_elements()?,
             (b"Elements", false) => reader.with_coding(Reader::elements)?,
             // Periodic entities, data and others.
-            _ => reader.skip(section)?,
+            _ => skip(&mut reader.source, section)?,
         }
         reader.end(section)?;
     }
-    let Reader { source, mut builder, names, groups, .. } = reader;
-    for ((dimension, tag), points) in groups {
-        let name = names.get(&(dimension, tag)).cloned().unwrap_or_else(|| {
-            let kind = ["point", "curve", "surface", "volume"].get(dimension as usize).copied().unwrap_or("group");
-            format!("{kind} {tag}")
-        });
-        builder.group(name, points);
-    }
-    builder.finish(&source, 0)
+    reader.builder.finish(&reader.source, 0)
+}
+
+/// Goes to the end of a section.
+fn skip(source: &mut Source<'_>, section: &[u8]) -> Result<(), ReadError> {
+    let end = [b"$End", section].concat();
+    let length = source.rest().windows(end.len()).position(|window| window == end);
+    source.at += length.ok_or_else(|| source.ends(&quoted(&end)))?;
+    Ok(())
 }
 
 impl Reader<'_, '_> {
@@ -110,19 +100,6 @@ impl Reader<'_, '_> {
         read(self)?;
         self.source.coding = Coding::Text;
         Ok(())
-    }
-
-    /// Goes to the end of a section.
-    fn skip(&mut self, section: &[u8]) -> Result<(), ReadError> {
-        let end = [b"$End", section].concat();
-        let rest = self.source.rest();
-        match rest.windows(end.len()).position(|window| window == end) {
-            Some(length) => {
-                self.source.at += length;
-                Ok(())
-            }
-            None => Err(self.source.ends(&quoted(&end))),
-        }
     }
 
     /// Reads the end of a section.
@@ -140,30 +117,38 @@ impl Reader<'_, '_> {
         self.source.count(self.size, expected)
     }
 
-    fn coordinates(&mut self) -> Result<DVec3, ReadError> {
-        let mut next = || self.source.float(Scalar::F64, "a coordinate");
-        Ok(DVec3::new(next()?, next()?, next()?))
-    }
-
     fn physical_names(&mut self) -> Result<(), ReadError> {
         for _ in 0..self.source.count(Scalar::I32, "the number of names")? {
             let dimension = self.source.integer(Scalar::I32, "the dimension of a group")?;
             let tag = self.source.integer(Scalar::I32, "the number of a group")?;
             let line = self.source.line().trim_ascii();
             let name = line.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\"")).unwrap_or(line);
-            self.names.insert((dimension, tag), String::from_utf8_lossy(name).into_owned());
+            self.builder.set_names.insert((dimension, tag), String::from_utf8_lossy(name).into_owned());
         }
         Ok(())
     }
 
-    fn entities(&mut self) -> Result<(), ReadError> {
+    /// Reads the groups of entities. The elements of a partitioned mesh belong to entities of the partitions.
+    fn entities(&mut self, is_partitioned: bool) -> Result<(), ReadError> {
+        let number = "the number of an entity";
+        if is_partitioned {
+            self.count("the number of partitions")?;
+            let ghosts = self.count("the number of ghost entities")?;
+            self.source.skip(2 * ghosts.min(u64::MAX / 2), Scalar::I32, number)?;
+        }
         let mut counts = [0; 4];
         for count in &mut counts {
             *count = self.count("the number of entities")?;
         }
         for (dimension, count) in (0..).zip(counts) {
             for _ in 0..count {
-                let tag = self.int("the number of an entity")?;
+                let tag = self.int(number)?;
+                if is_partitioned {
+                    // The dimension and the number of its parent.
+                    self.source.skip(2, Scalar::I32, number)?;
+                    let partitions = self.count("the number of partitions of an entity")?;
+                    self.source.skip(partitions, Scalar::I32, "the number of a partition")?;
+                }
                 // A point, or two corners of a box.
                 self.source.skip(if dimension == 0 { 3 } else { 6 }, Scalar::F64, "a coordinate")?;
                 let mut physical = Vec::new();
@@ -173,7 +158,7 @@ impl Reader<'_, '_> {
                 }
                 if dimension > 0 {
                     let bounds = self.count("the number of entities around an entity")?;
-                    self.source.skip(bounds, Scalar::I32, "the number of an entity")?;
+                    self.source.skip(bounds, Scalar::I32, number)?;
                 }
                 physical.sort_unstable();
                 physical.dedup();
@@ -200,9 +185,9 @@ impl Reader<'_, '_> {
                 tags.push(self.source.integer(self.size, "the number of a node")?);
             }
             for &tag in &tags {
-                let point = self.coordinates()?;
+                let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
                 self.source.skip(parameters, Scalar::F64, "a parameter")?;
-                self.tags.push(tag, self.builder.point(point)?);
+                self.tags.push(tag, self.builder.point_at(point, at)?);
             }
         }
         Ok(())
@@ -215,8 +200,8 @@ impl Reader<'_, '_> {
         self.source.coding = self.coding;
         for _ in 0..count {
             let tag = self.int("the number of a node")?;
-            let point = self.coordinates()?;
-            self.tags.push(tag, self.builder.point(point)?);
+            let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
+            self.tags.push(tag, self.builder.point_at(point, at)?);
         }
         self.source.coding = Coding::Text;
         Ok(())
@@ -292,113 +277,56 @@ impl Reader<'_, '_> {
             let start = self.source.at;
             let tag = self.source.integer(scalar, "the number of a node")?;
             if let Some(corner) = corners[..kind.corners].get_mut(at) {
-                *corner = self.tags.get(tag).ok_or_else(|| {
-                    let message = format!("names node {tag} {}, which it does not have", self.source.place(start));
-                    ReadError::new(message, DAMAGED)
-                })?;
+                *corner = self.tags.find(tag, "node", start, &self.source)?;
             }
         }
         let corners = &corners[..kind.corners];
         for &group in groups {
-            self.grouped += corners.len();
-            if self.grouped > 4 * self.limits.corners {
-                let most = self.limits.corners;
-                let message = format!("has groups with more than {} nodes", 4 * most);
-                return Err(ReadError::new(message, "put each element into one physical group or few"));
-            }
-            self.groups.entry((dimension, group)).or_default().extend(corners);
+            self.builder.number((dimension, group), corners)?;
         }
-        match *corners {
-            [a, b, c, d, e, f, g, h] => self.builder.cell(kind.cell, &along(&[a, b, c, d, e, f, g, h])),
-            _ => self.builder.cell(kind.cell, corners),
-        }
+        self.builder.around(kind.cell, corners)
     }
 }
 
 /// A type of elements.
 #[derive(Clone, Copy)]
-struct Kind {
-    cell: CellKind,
-    dimension: i64,
+pub(super) struct Kind {
+    pub(super) cell: CellKind,
+    pub(super) dimension: i64,
     /// The number of its corners, which are the first of its nodes.
-    corners: usize,
-    nodes: usize,
+    pub(super) corners: usize,
+    pub(super) nodes: usize,
 }
 
 impl Kind {
-    fn of(number: i64) -> Option<Self> {
+    /// The type of a number in Gmsh.
+    pub(super) fn of(number: i64) -> Option<Self> {
         use CellKind::{Hexahedron, Line, Point, Polygon, Pyramid, Tetrahedron, Wedge};
-        let (cell, dimension, corners, nodes) = match number {
-            15 => (Point, 0, 1, 1),
-            1 => (Line, 1, 2, 2),
-            8 => (Line, 1, 2, 3),
-            26..=28 => (Line, 1, 2, number as usize - 22),
-            2 => (Polygon, 2, 3, 3),
-            9 => (Polygon, 2, 3, 6),
-            20 => (Polygon, 2, 3, 9),
-            21 => (Polygon, 2, 3, 10),
-            22 => (Polygon, 2, 3, 12),
-            23 | 24 => (Polygon, 2, 3, 15),
-            25 => (Polygon, 2, 3, 21),
-            3 => (Polygon, 2, 4, 4),
-            16 => (Polygon, 2, 4, 8),
-            10 => (Polygon, 2, 4, 9),
-            36 => (Polygon, 2, 4, 16),
-            37 => (Polygon, 2, 4, 25),
-            38 => (Polygon, 2, 4, 36),
-            4 => (Tetrahedron, 3, 4, 4),
-            11 => (Tetrahedron, 3, 4, 10),
-            29 => (Tetrahedron, 3, 4, 20),
-            30 => (Tetrahedron, 3, 4, 35),
-            31 => (Tetrahedron, 3, 4, 56),
-            5 => (Hexahedron, 3, 8, 8),
-            17 => (Hexahedron, 3, 8, 20),
-            12 => (Hexahedron, 3, 8, 27),
-            92 => (Hexahedron, 3, 8, 64),
-            93 => (Hexahedron, 3, 8, 125),
-            6 => (Wedge, 3, 6, 6),
-            18 => (Wedge, 3, 6, 15),
-            13 => (Wedge, 3, 6, 18),
-            90 => (Wedge, 3, 6, 40),
-            91 => (Wedge, 3, 6, 75),
-            7 => (Pyramid, 3, 5, 5),
-            19 => (Pyramid, 3, 5, 13),
-            14 => (Pyramid, 3, 5, 14),
-            118 => (Pyramid, 3, 5, 30),
+        const NODES: [usize; 31] = [
+            2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56,
+        ];
+        let (cell, dimension, corners) = match number {
+            15 => (Point, 0, 1),
+            1 | 8 | 26..=28 => (Line, 1, 2),
+            2 | 9 | 20..=25 => (Polygon, 2, 3),
+            3 | 10 | 16 | 36..=38 => (Polygon, 2, 4),
+            4 | 11 | 29..=31 => (Tetrahedron, 3, 4),
+            5 | 12 | 17 | 92 | 93 => (Hexahedron, 3, 8),
+            6 | 13 | 18 | 90 | 91 => (Wedge, 3, 6),
+            7 | 14 | 19 | 118 => (Pyramid, 3, 5),
             _ => return None,
+        };
+        let nodes = match number {
+            36..=38 => [16, 25, 36][number as usize - 36],
+            90..=93 => [40, 75, 64, 125][number as usize - 90],
+            118 => 30,
+            _ => NODES[number as usize - 1],
         };
         Some(Self { cell, dimension, corners, nodes })
     }
-}
 
-/// The point of each number of a node. Most files count nodes one after the other.
-#[derive(Default)]
-struct Tags {
-    first: i64,
-    count: u32,
-    /// The points of numbers, once they are not consecutive.
-    other: Option<HashMap<i64, u32>>,
-}
-
-impl Tags {
-    fn push(&mut self, tag: i64, point: u32) {
-        if self.count == 0 {
-            self.first = tag;
-        }
-        let (first, count) = (self.first, self.count);
-        if self.other.is_none() && first.checked_add(count.into()) != Some(tag) {
-            self.other = Some((0..count).map(|at| (first + i64::from(at), at)).collect());
-        }
-        if let Some(other) = &mut self.other {
-            other.insert(tag, point);
-        }
-        self.count += 1;
-    }
-
-    fn get(&self, tag: i64) -> Option<u32> {
-        match &self.other {
-            Some(other) => other.get(&tag).copied(),
-            None => u32::try_from(tag.checked_sub(self.first)?).ok().filter(|&point| point < self.count),
-        }
+    /// The type of first or second order with these numbers.
+    pub(super) fn with(dimension: i64, nodes: usize) -> Option<Self> {
+        (1..20).filter_map(Self::of).find(|kind| (kind.dimension, kind.nodes) == (dimension, nodes))
     }
 }

@@ -1,7 +1,7 @@
 //! The types of cells of VTK, in its files of both formats (`vtkCellType.h`).
 
 use super::ReadError;
-use super::cells::{Builder, CellKind, along};
+use super::cells::{Builder, CellKind};
 use super::source::DAMAGED;
 
 /// Adds a cell of a type. Of cells of higher order the corners are taken, which VTK lists first.
@@ -38,9 +38,7 @@ pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Resu
     match (kind, if count == 0 { corners } else { &corners[..count] }) {
         // Pixels and voxels are listed along their axes.
         (8, &[a, b, c, d]) => builder.cell(cell, &[a, b, d, c]),
-        (12.., &[a, b, c, d, e, f, g, h]) if cell == Hexahedron => {
-            builder.cell(cell, &along(&[a, b, c, d, e, f, g, h]))
-        }
+        (12.., corners) if cell == Hexahedron => builder.around(cell, corners),
         (7 | 36, corners) => builder.face(corners),
         (_, corners) => builder.cell(cell, corners),
     }
@@ -79,10 +77,27 @@ pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Build
     }
     let mut sorted = corners.clone();
     sorted.sort_unstable();
-    match *corners {
-        // Faces that do not fit together.
-        _ if sorted != points => builder.cell(CellKind::Polyhedron, &points),
-        [a, b, c, d, e, f, g, h] => builder.cell(kind, &along(&[a, b, c, d, e, f, g, h])),
-        _ => builder.cell(kind, &corners),
+    // Faces may not fit together.
+    if sorted == points { builder.around(kind, &corners) } else { builder.cell(CellKind::Polyhedron, &points) }
+}
+
+/// The names of arrays that tell copies of cells and points of other pieces: VTK's, and that of VTK before version 7.
+pub(super) const GHOSTS: [&[u8]; 2] = [b"vtkGhostType", b"vtkGhostLevels"];
+
+/// Whether a number in an array of this name leaves a cell or a point out (`vtkDataSetAttributes.h`).
+pub(super) fn is_ghost(name: &[u8], number: i64, is_cell: bool) -> bool {
+    /// Copies, cells that finer ones cover, and hidden cells.
+    const CELL: i64 = 1 | 8 | 32;
+    if name == GHOSTS[1] { number > 0 } else { number & if is_cell { CELL } else { 1 } != 0 }
+}
+
+/// Refuses arrays of ghosts that are there with another length than the number of points and of cells.
+pub(super) fn check_ghosts(found: [&[bool]; 2], counts: [usize; 2]) -> Result<(), ReadError> {
+    for ((found, count), what) in found.iter().zip(counts).zip(["points", "cells"]) {
+        if !found.is_empty() && found.len() != count {
+            let message = format!("has {count} {what}, but tells of {} whether they are ghosts", found.len());
+            return Err(ReadError::new(message, DAMAGED));
+        }
     }
+    Ok(())
 }

@@ -95,7 +95,7 @@ fn required(tag: &BytesStart<'_>, name: &str, place: &str) -> Result<String, Rea
 }
 
 /// An attribute without its escapes.
-fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, ReadError> {
+pub(super) fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, ReadError> {
     let damaged = |error: &dyn std::fmt::Display| ReadError::new(format!("is no sound XML: {error}"), DAMAGED);
     let Some(attribute) = tag.try_get_attribute(name).map_err(|error| damaged(&error))? else { return Ok(None) };
     quick_xml::escape::unescape(&attribute.value).map(|text| Some(text.into_owned())).map_err(|error| damaged(&error))

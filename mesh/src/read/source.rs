@@ -151,6 +151,17 @@ impl<'b> Source<'b> {
         None
     }
 
+    /// The fields of a line between commas that are not blank, with their numbers.
+    pub(super) fn fields(&self) -> impl Iterator<Item = (usize, Self)> {
+        let (bytes, mut next) = (self.bytes, self.at);
+        let parts = self.rest().split(|&byte| byte == b',').map(move |part| {
+            let start = next;
+            next += part.len() + 1;
+            Self::part(bytes, start, start + part.len())
+        });
+        parts.enumerate().filter(|(_, part)| !part.rest().trim_ascii().is_empty())
+    }
+
     /// So many bytes.
     pub(super) fn take(&mut self, count: usize, expected: &str) -> Result<&'b [u8], ReadError> {
         let rest = self.rest();

@@ -2,9 +2,10 @@
 //! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html>).
 
 use super::cells::Builder;
+use super::kinds::GHOSTS;
 use super::source::{Coding, DAMAGED, Scalar, Source};
 use super::{Cells, Format, Limits, ReadError, content, kinds};
-use glam::DVec3;
+use memchr::memmem;
 
 /// Lists of points, one after the other.
 #[derive(Default)]
@@ -22,6 +23,19 @@ impl Lists {
 }
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
+    // Which cells are copies is told behind them.
+    let mut reader = read_with(bytes, Vec::new(), limits)?;
+    if reader.ghosts[1].contains(&true) {
+        reader = read_with(bytes, std::mem::take(&mut reader.ghosts[1]), limits)?;
+    }
+    let copies = (0..).zip(&reader.ghosts[0]).filter(|&(_, &is_copy)| is_copy).map(|(point, _)| point);
+    copies.for_each(|point| reader.builder.cells.copies.push(&[point]));
+    reader.source.coding = reader.coding;
+    reader.builder.finish(&reader.source, 0)
+}
+
+/// Reads a file whose copies among the cells are known.
+fn read_with<'b, 'l>(bytes: &'b [u8], copies: Vec<bool>, limits: &'l Limits) -> Result<Reader<'b, 'l>, ReadError> {
     let mut source = Source::text(bytes);
     if !source.line().to_ascii_lowercase().starts_with(b"# vtk datafile version") {
         return Err(content::no_beginning(bytes, Format::Vtk, "`# vtk DataFile Version`"));
@@ -34,13 +48,22 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         b"BINARY" => Coding::Big,
         _ => return Err(source.wrong(word, "`ASCII` or `BINARY`")),
     };
-    let mut reader = Reader { source, coding, builder: Builder::new(limits), limits, cells: None };
+    let mut reader = Reader {
+        source,
+        coding,
+        builder: Builder::new(limits),
+        limits,
+        cells: None,
+        copies,
+        count: 0,
+        ghosts: Default::default(),
+    };
     while reader.section()? {}
     if reader.cells.is_some() {
         return Err(reader.source.ends("`CELL_TYPES`"));
     }
-    reader.source.coding = coding;
-    reader.builder.finish(&reader.source, 0)
+    reader.ghosts()?;
+    Ok(reader)
 }
 
 struct Reader<'b, 'l> {
@@ -50,6 +73,12 @@ struct Reader<'b, 'l> {
     limits: &'l Limits,
     /// Cells whose types follow.
     cells: Option<Lists>,
+    /// Which cells are copies, as far as it is known.
+    copies: Vec<bool>,
+    /// The number of cells so far.
+    count: usize,
+    /// Which points and cells are copies, as the end of the file tells.
+    ghosts: [Vec<bool>; 2],
 }
 
 impl Reader<'_, '_> {
@@ -78,7 +107,10 @@ impl Reader<'_, '_> {
             b"METADATA" => self.metadata(),
             b"FIELD" => self.fields()?,
             // What follows belongs to points and cells.
-            b"" | b"CELL_DATA" | b"POINT_DATA" => return Ok(false),
+            b"" | b"CELL_DATA" | b"POINT_DATA" => {
+                self.source.at -= word.len();
+                return Ok(false);
+            }
             _ => return Err(self.source.wrong(word, "`POINTS`, `CELLS` or another section")),
         }
         Ok(true)
@@ -96,11 +128,44 @@ impl Reader<'_, '_> {
         let scalar = self.scalar()?;
         self.source.coding = self.coding;
         for _ in 0..count {
-            let mut coordinate = || self.source.float(scalar, "a coordinate");
-            let point = DVec3::new(coordinate()?, coordinate()?, coordinate()?);
-            self.builder.point(point)?;
+            let at = self.source.at;
+            self.builder.point_at(self.source.point(scalar)?, at)?;
         }
         self.source.coding = Coding::Text;
+        Ok(())
+    }
+
+    /// Reads which points and cells are copies, wherever that stands among their data.
+    fn ghosts(&mut self) -> Result<(), ReadError> {
+        let (start, data) = (self.source.at, self.source.rest());
+        let (mut before, mut of_cells) = (0, false);
+        for at in memmem::find_iter(data, "vtkGhost") {
+            let last = ["POINT_DATA", "CELL_DATA"].map(|of| memmem::rfind(&data[before..at], of.as_bytes()));
+            of_cells = if last == [None; 2] { of_cells } else { last[1] > last[0] };
+            before = at;
+            // What was read as numbers already is no name.
+            let is_name =
+                |name: &&[u8]| data[at..].strip_prefix(*name).is_some_and(|rest| rest.trim_ascii_start() != rest);
+            let found = GHOSTS.into_iter().find(is_name).filter(|_| start + at >= self.source.at);
+            let Some(name) = found else { continue };
+            self.source.at = start + at + name.len();
+            // In a field, the numbers of columns and rows stand before the type; else a table of colours may follow.
+            if self.source.peek().first().is_some_and(u8::is_ascii_digit) {
+                self.source.skip(2, Scalar::I64, "the number of data")?;
+            }
+            let scalar = self.scalar()?;
+            if self.source.peek() == b"LOOKUP_TABLE" {
+                self.source.line();
+            }
+            let ghosts = &mut self.ghosts[usize::from(of_cells)];
+            ghosts.clear();
+            self.source.coding = self.coding;
+            for _ in 0..if of_cells { self.count } else { self.builder.points() } {
+                let number = self.source.integer(scalar, "what tells ghosts")?;
+                ghosts.push(kinds::is_ghost(name, number, of_cells));
+            }
+            self.source.coding = Coding::Text;
+        }
         Ok(())
     }
 
@@ -207,6 +272,8 @@ impl Reader<'_, '_> {
     }
 
     fn cell(&mut self, kind: i64, list: &[i64], place: usize) -> Result<(), ReadError> {
+        self.builder.is_copy = self.copies.get(self.count).is_some_and(|&is_copy| is_copy);
+        self.count += 1;
         let mut corner = |index: i64| self.builder.corner(index, place, &self.source);
         if kind != 42 {
             let corners = list.iter().map(|&index| corner(index)).collect::<Result<Vec<_>, _>>()?;

@@ -2,6 +2,8 @@
 //! packed by zlib or not (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>).
 
 use super::cells::Builder;
+use super::kinds::GHOSTS;
+use super::pvd::attribute;
 use super::source::{CUT, Coding, DAMAGED, Scalar, Source, quoted};
 use super::{Cells, Format, Limits, ReadError, content, kinds};
 use base64::Engine;
@@ -18,6 +20,10 @@ use std::io::Read;
 /// An array of numbers where it stands in the file.
 struct Array {
     scalar: Scalar,
+    /// The number of components of a point or a vector.
+    columns: usize,
+    /// Where it begins to be described.
+    at: usize,
     place: Place,
 }
 
@@ -30,15 +36,9 @@ enum Place {
     Appended(usize),
 }
 
-impl Array {
-    /// An array between two places of the file.
-    fn inside(scalar: Scalar, is_binary: bool, start: usize, end: usize) -> Self {
-        Self { scalar, place: if is_binary { Place::Inline(start, end) } else { Place::Text(start, end) } }
-    }
-}
-
-/// Where the only arrays beside points and cells that are read stand: the velocities and displacements of points.
+/// Where the arrays beside points and cells that are read stand: velocities and displacements of points, and what tells copies.
 const POINT_DATA: &[u8] = b"PointData";
+const CELL_DATA: &[u8] = b"CellData";
 const VELOCITY: &[u8] = b"velocity";
 const DISPLACEMENT: &[u8] = b"displacement";
 
@@ -93,7 +93,10 @@ fn appended(bytes: &[u8]) -> Result<(&[u8], bool), ReadError> {
     let (Some(tag), Some(begin)) = (position(b'>'), position(b'_')) else {
         return Err(ReadError::new("ends in its `<AppendedData>`; expected `_` and data", CUT));
     };
-    let is_raw = bytes[..tag].windows(5).any(|window| window == b"\"raw\"");
+    let is_raw = match Reader::from_reader(&bytes[..=tag]).read_event() {
+        Ok(Event::Start(tag)) => attribute(&tag, "encoding")?.as_deref() == Some("raw"),
+        _ => false,
+    };
     Ok((&bytes[(begin + 1).max(tag + 1)..], is_raw))
 }
 
@@ -109,8 +112,16 @@ fn pieces(
     let mut reader = Reader::from_reader(text);
     let mut path: Vec<Vec<u8>> = Vec::new();
     let mut piece = Piece::new();
-    // The array whose text follows, with its start.
-    let mut open: Option<(Key, Scalar, bool, usize)> = None;
+    // The array whose text follows.
+    let mut open: Option<(Key, Array)> = None;
+    let close = |open: &mut Option<(Key, Array)>, piece: &mut Piece, before: u64| {
+        if let Some((key, mut array)) = open.take() {
+            if let Place::Text(_, end) | Place::Inline(_, end) = &mut array.place {
+                *end = before as usize;
+            }
+            piece.insert(key, array);
+        }
+    };
     let (mut is_begun, mut is_ended) = (false, false);
     loop {
         let before = reader.buffer_position();
@@ -122,9 +133,7 @@ fn pieces(
         match event {
             Event::Start(tag) | Event::Empty(tag) => {
                 // An array may contain elements about it after its numbers.
-                if let Some((key, scalar, is_binary, start)) = open.take() {
-                    piece.insert(key, Array::inside(scalar, is_binary, start, before as usize));
-                }
+                close(&mut open, &mut piece, before);
                 let name = tag.local_name().as_ref().as_bytes().to_vec();
                 match &*name {
                     b"VTKFile" => {
@@ -143,29 +152,24 @@ fn pieces(
                         if is_displacement {
                             name = DISPLACEMENT.to_vec();
                         }
-                        if wanted.contains(&&*parent) || is_displacement || parent == POINT_DATA && name == VELOCITY {
-                            let key = (parent, name);
+                        let is_ghost = (parent == POINT_DATA || parent == CELL_DATA) && GHOSTS.contains(&&*name);
+                        let is_vector =
+                            parent == b"Points" || is_displacement || parent == POINT_DATA && name == VELOCITY;
+                        if wanted.contains(&&*parent) || is_vector || is_ghost {
                             let scalar = scalar(&attribute(&tag, "type")?.unwrap_or_default())?;
+                            let columns = if is_vector { columns(&tag, &name, || place(before))? } else { 1 };
                             let start = reader.buffer_position() as usize;
-                            match attribute(&tag, "format")?.as_deref() {
+                            let place = match attribute(&tag, "format")?.as_deref() {
                                 Some("appended") => {
                                     let offset =
                                         attribute(&tag, "offset")?.and_then(|offset| offset.trim().parse().ok());
-                                    let missing = || {
+                                    Place::Appended(offset.ok_or_else(|| {
                                         let message = format!("has an array without an offset {}", place(before));
                                         ReadError::new(message, DAMAGED)
-                                    };
-                                    let place = Place::Appended(offset.ok_or_else(missing)?);
-                                    piece.insert(key, Array { scalar, place });
+                                    })?)
                                 }
-                                Some("binary") if is_empty => {
-                                    piece.insert(key, Array::inside(scalar, true, start, start));
-                                }
-                                Some("binary") => open = Some((key, scalar, true, start)),
-                                Some("ascii") | None if is_empty => {
-                                    piece.insert(key, Array::inside(scalar, false, start, start));
-                                }
-                                Some("ascii") | None => open = Some((key, scalar, false, start)),
+                                Some("binary") => Place::Inline(start, start),
+                                Some("ascii") | None => Place::Text(start, start),
                                 Some(other) => {
                                     let message = format!(
                                         "has an array of the format {} {}; expected `ascii`, `binary` or `appended`",
@@ -174,6 +178,10 @@ fn pieces(
                                     );
                                     return Err(ReadError::new(message, DAMAGED));
                                 }
+                            };
+                            open = Some(((parent, name), Array { scalar, columns, at: before as usize, place }));
+                            if is_empty {
+                                close(&mut open, &mut piece, start as u64);
                             }
                         }
                     }
@@ -186,11 +194,7 @@ fn pieces(
             Event::End(tag) => {
                 path.pop();
                 match tag.local_name().as_ref().as_bytes() {
-                    b"DataArray" => {
-                        if let Some((key, scalar, is_binary, start)) = open.take() {
-                            piece.insert(key, Array::inside(scalar, is_binary, start, before as usize));
-                        }
-                    }
+                    b"DataArray" => close(&mut open, &mut piece, before),
                     b"Piece" => layout.piece(&std::mem::take(&mut piece), builder, limits)?,
                     b"VTKFile" => is_ended = true,
                     _ => {}
@@ -226,10 +230,18 @@ fn header(tag: &BytesStart<'_>, layout: &mut Layout<'_>) -> Result<(), ReadError
     Ok(())
 }
 
-fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, ReadError> {
-    match tag.try_get_attribute(name) {
-        Ok(attribute) => Ok(attribute.map(|attribute| attribute.value.into_owned())),
-        Err(error) => Err(ReadError::new(format!("is no sound XML: {error}"), DAMAGED)),
+/// The number of components of points and vectors: 3, or 2 in the plane.
+fn columns(tag: &BytesStart<'_>, name: &[u8], place: impl Fn() -> String) -> Result<usize, ReadError> {
+    let found = attribute(tag, "NumberOfComponents")?;
+    match found.as_deref().map(str::trim) {
+        None | Some("3") => Ok(3),
+        Some("2") => Ok(2),
+        Some(other) => {
+            let name = quoted(if name.is_empty() { b"Points" } else { name });
+            let message =
+                format!("has {other} components in its array {name} {}; expected 3, or 2 in the plane", place());
+            Err(ReadError::new(message, "write points and vectors with x, y and z"))
+        }
     }
 }
 
@@ -253,6 +265,11 @@ fn scalar(name: &str) -> Result<Scalar, ReadError> {
     })
 }
 
+/// A point or a vector by its components, those in the plane with z = 0.
+fn vector(array: &Array, mut next: impl FnMut() -> Result<f64, ReadError>) -> Result<DVec3, ReadError> {
+    Ok(DVec3::new(next()?, next()?, if array.columns == 3 { next()? } else { 0.0 }))
+}
+
 impl Layout<'_> {
     /// Reads the arrays of a piece.
     fn piece(&self, piece: &Piece, builder: &mut Builder<'_>, limits: &Limits) -> Result<(), ReadError> {
@@ -260,16 +277,15 @@ impl Layout<'_> {
         if let Some(((_, name), array)) = piece.iter().find(|((parent, _), _)| parent == b"Points") {
             let name = if name.is_empty() { b"Points" } else { &**name };
             self.each(array, name, 3 * limits.points, |source| {
-                let mut coordinate = || source.float(array.scalar, "a coordinate");
-                builder.point(DVec3::new(coordinate()?, coordinate()?, coordinate()?)).map(drop)
+                let at = if source.coding == Coding::Text { source.at } else { array.at };
+                builder.point_at(vector(array, || source.coordinate(array.scalar))?, at).map(drop)
             })?;
         }
         let vectors = |name: &[u8], expected: &str| -> Result<Option<Vec<DVec3>>, ReadError> {
             let Some(array) = piece.get(&(POINT_DATA.to_vec(), name.to_vec())) else { return Ok(None) };
             let mut vectors = Vec::new();
             self.each(array, name, 3 * limits.points, |source| {
-                let mut component = || source.float(array.scalar, expected);
-                vectors.push(DVec3::new(component()?, component()?, component()?));
+                vectors.push(vector(array, || source.float(array.scalar, expected))?);
                 Ok(())
             })?;
             Ok(Some(vectors))
@@ -281,6 +297,14 @@ impl Layout<'_> {
             Some(array) => self.integers(array, name, 4 * limits.corners),
             None => Ok(Vec::new()),
         };
+        let ghosts = |parent: &[u8]| -> Result<Vec<bool>, ReadError> {
+            let Some(name) = GHOSTS.into_iter().find(|name| get(parent, name).is_some()) else { return Ok(Vec::new()) };
+            let numbers = integers(parent, name)?;
+            Ok(numbers.iter().map(|&number| kinds::is_ghost(name, number, parent == CELL_DATA)).collect())
+        };
+        let (points, cells) = (ghosts(POINT_DATA)?, ghosts(CELL_DATA)?);
+        let copies = (first as u32..).zip(&points).filter(|&(_, &is_copy)| is_copy).map(|(point, _)| point);
+        copies.for_each(|point| builder.cells.copies.push(&[point]));
         let polyhedra = Polyhedra {
             streams: integers(b"Cells", b"faces")?,
             ends: integers(b"Cells", b"faceoffsets")?,
@@ -290,6 +314,7 @@ impl Layout<'_> {
             cells: integers(b"Cells", b"polyhedron_offsets")?,
         };
         let kinds: [(&[u8], i64); 5] = [(b"Cells", -1), (b"Verts", 2), (b"Lines", 4), (b"Polys", 7), (b"Strips", 6)];
+        let mut number = 0;
         for (parent, kind) in kinds {
             let [connectivity, offsets, types] =
                 [&b"connectivity"[..], b"offsets", b"types"].map(|name| integers(parent, name));
@@ -311,6 +336,8 @@ impl Layout<'_> {
                 let kind = if kind < 0 { types[cell] } else { kind };
                 let list = &connectivity[start..end];
                 start = end;
+                builder.is_copy = cells.get(number).is_some_and(|&is_copy| is_copy);
+                number += 1;
                 let corner = |builder: &mut Builder<'_>, index: i64| corner(builder, index, first);
                 if kind == 42 {
                     let mut faces = Vec::new();
@@ -327,7 +354,8 @@ impl Layout<'_> {
                 }
             }
         }
-        Ok(())
+        builder.is_copy = false;
+        kinds::check_ghosts([&points, &cells], [builder.points() - first as usize, number])
     }
 
     /// Counts numbers.

@@ -88,9 +88,10 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass`.
     pub(in crate::scene) masses: Option<Vec<Positive>>,
-    /// A mesh file beside the scene. Cells become elements: Gmsh (.msh, 2.2 or 4.1), VTK (.vtk, .vtu). A surface is filled with
-    /// elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb, .vtp, and .msh, .vtk or .vtu without cells. It then needs
-    /// `density` or `mass_total`. `localshape check FILE` tells what a file contains. A .gltf may have its data in files beside it.
+    /// A mesh file beside the scene. Cells become elements: Gmsh (.msh, 2.2 or 4.1), VTK (.vtk, .vtu), Abaqus and CalculiX (.inp),
+    /// Medit (.mesh). A surface is filled with elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb, .vtp, and the formats
+    /// of cells where a file has none. It then needs `density` or `mass_total`. `localshape check FILE` tells what a file contains.
+    /// A .gltf may have its data in files beside it.
     #[schemars(length(min = 1))]
     pub(in crate::scene) mesh: Option<String>,
     /// The elements that fill the surface in `mesh`: `{ with = "cubes", cells = 20 }`.

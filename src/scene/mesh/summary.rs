@@ -19,6 +19,8 @@ pub(crate) struct MeshSummary {
     points: usize,
     /// Sides of the box around them.
     extent: [f64; 3],
+    /// What is left out of the file or not read, each as the predicate of a sentence about it.
+    notes: Vec<String>,
     #[serde(flatten)]
     content: Content,
 }
@@ -119,10 +121,13 @@ impl GroupSummary {
 impl MeshSummary {
     /// Reads a file. A message is the predicate of a sentence about the file.
     pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
-        Ok(match MeshFile::read(path, None, limits)?.mesh {
+        let mesh = MeshFile::read(path, None, limits)?.mesh;
+        let notes = mesh.notes().to_vec();
+        let summary = match mesh {
             Mesh::Volume(volume) => Self::of_cells(volume),
             Mesh::Surface(surface) => Self::of_surface(&surface, limits),
-        })
+        };
+        Ok(Self { notes, ..summary })
     }
 
     fn of_cells(volume: Volume) -> Self {
@@ -145,7 +150,7 @@ impl MeshSummary {
             groups: groups.iter().map(GroupSummary::new).collect(),
             error: crossed(&body),
         });
-        Self { points: number, extent: (high - low).to_array(), content }
+        Self { points: number, extent: (high - low).to_array(), notes: Vec::new(), content }
     }
 
     fn of_surface(surface: &Surface, limits: &Limits) -> Self {
@@ -179,7 +184,7 @@ impl MeshSummary {
             groups: surface.groups.iter().map(GroupSummary::new).collect(),
             fills: fills.into(),
         });
-        Self { points: surface.points.len(), extent: (high - low).to_array(), content }
+        Self { points: surface.points.len(), extent: (high - low).to_array(), notes: Vec::new(), content }
     }
 
     /// Why it cannot be a body; `None` if it can.
@@ -259,6 +264,7 @@ impl fmt::Display for MeshSummary {
                 }
             }
         }
+        self.notes.iter().try_for_each(|note| line("note", note))?;
         let (Content::Cells(CellsSummary { weld, groups, .. }) | Content::Surface(SurfaceSummary { weld, groups, .. })) =
             &self.content;
         if let Some(weld) = weld {

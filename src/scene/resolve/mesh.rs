@@ -52,6 +52,7 @@ pub(super) fn make(
     let name = file.mesh.as_deref().unwrap_or_default();
     let path = key_path![place; "mesh"];
     let mut mesh = read.mesh;
+    mesh.notes().iter().for_each(|note| report.warn(&path, format!("`{name}` {note}"), None));
     let (points, dimension) = match &mut mesh {
         Mesh::Volume(volume) => (&mut volume.points, volume.dimension),
         Mesh::Surface(surface) => (&mut surface.points, Dimension::Space),

@@ -135,26 +135,28 @@ impl ReadRecording {
         };
         let start = recorded.start();
         let start = State::new(start.position, start.velocity);
-        let Some((own, turned)) = own else { return Some((recorded, Shown::Bodies(start))) };
+        let Some((own, turned, notes)) = own else { return Some((recorded, Shown::Bodies(start))) };
         if run.bodies.is_some() {
             let help = "remove `bodies`, so that its own body is shown";
             told(at, run, &file, Flaw::new("", "has another body than those in `bodies`").with_help(help), report);
             return None;
         }
         mesh::warn_of_turned(turned, own.elements.len(), &file, &place(at, run), report);
+        notes.iter().for_each(|note| report.warn(&place(at, run), format!("`{file}` {note}"), None));
         let made = body::recorded(own, run.name.clone(), start, report)?;
         (report.total() == known).then(|| (recorded, Shown::Own(Box::new(made))))
     }
 }
 
 impl Own {
-    /// The recording of a body, and the body with the number of its elements that were turned over, unless it is the whole of a run.
+    /// The recording of a body, and the body with the number of its elements that were turned over and what is left out of its file,
+    /// unless it is the whole of a run.
     fn of(
         self,
         recorded: Recorded,
         whole: &Body,
         dimension: Dimension,
-    ) -> Result<(Recorded, Option<(Lists, usize)>), Flaw> {
+    ) -> Result<(Recorded, Option<(Lists, usize, Vec<String>)>), Flaw> {
         let wrong = match (dimension, recorded.columns) {
             (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
             (Dimension::Plane, 3) if !recorded.is_flat => {
@@ -183,7 +185,7 @@ impl Own {
             }
             Self::Rest(own) => {
                 let is_same = are_near(&own.nodes, whole) && are_alike(&own.elements, &whole.elements);
-                Ok((recorded, (!is_same).then_some((Lists { dimension, ..*own }, 0))))
+                Ok((recorded, (!is_same).then_some((Lists { dimension, ..*own }, 0, Vec::new()))))
             }
             // First with all points: nodes of springs may belong to no cell.
             Self::Moment { cells, has_elements, .. }
@@ -193,13 +195,13 @@ impl Own {
             }
             Self::Moment { cells, source, .. } => {
                 let wrong = |error: ReadError| Flaw { help: error.help, ..Flaw::new("", error.message) };
-                let Volume { places, solids, points: nodes, cells: elements, turned, .. } =
+                let Volume { places, solids, points: nodes, cells: elements, turned, notes, .. } =
                     cells.elements(dimension).map_err(wrong)?;
                 let is_same = nodes.len() == whole.len() && are_alike(&elements, &whole.elements);
                 let (springs, faces, positions, velocities, masses) = Default::default();
                 let own =
                     Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
-                Ok((recorded.only(places), (!is_same).then_some((own, turned))))
+                Ok((recorded.only(places), (!is_same).then_some((own, turned, notes))))
             }
         }
     }

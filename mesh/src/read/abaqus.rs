@@ -1,0 +1,326 @@
+//! Input files of Abaqus and CalculiX (`.inp`): nodes, elements, and sets of both
+//! (<https://abaqus-docs.mit.edu/2017/English/SIMACAEKEYRefMap/simakey-c-intro.htm>, <https://www.calculix.de>).
+
+use super::cells::{self, Builder};
+use super::gmsh::Kind;
+use super::source::{DAMAGED, Scalar, Source, quoted};
+use super::tags::Tags;
+use super::{Cells, Format, Limits, ReadError, content};
+use std::collections::{BTreeMap, HashMap};
+
+struct Reader<'b, 'l> {
+    source: Source<'b>,
+    builder: Builder<'l>,
+    limits: &'l Limits,
+    /// The numbers of nodes and of elements.
+    tags: [Tags; 2],
+    /// The sets of nodes and of elements by their names in capitals: the name as typed, and the members.
+    sets: [BTreeMap<String, (String, Vec<u32>)>; 2],
+    /// The number of elements of each type that is not read.
+    skipped: BTreeMap<String, usize>,
+    /// The members of all sets so far.
+    spent: usize,
+    /// The numbers of parts and of instances.
+    parts: [usize; 2],
+    /// Whether keywords are about an assembly, whose nodes are points of reference with numbers of their own.
+    is_assembly: bool,
+}
+
+const NODES: usize = 0;
+const ELEMENTS: usize = 1;
+
+pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
+    let (source, builder) = (Source::text(bytes), Builder::new(limits));
+    let (tags, sets, skipped, spent, parts, is_assembly) = Default::default();
+    let mut reader = Reader { source, builder, limits, tags, sets, skipped, spent, parts, is_assembly };
+    let mut is_begun = false;
+    while let Some(line) = line(&mut reader.source) {
+        if line.rest().starts_with(b"*") {
+            let keyword = Keyword::new(line, &mut reader.source);
+            reader.read(&keyword)?;
+            is_begun = true;
+        } else if !is_begun {
+            return Err(content::no_beginning(bytes, Format::Abaqus, "a keyword, such as `*NODE`"));
+        }
+    }
+    reader.finish()
+}
+
+/// The next line that is neither empty nor a comment.
+fn line<'b>(source: &mut Source<'b>) -> Option<Source<'b>> {
+    std::iter::from_fn(|| source.next_line(0)).find(|line| !line.rest().starts_with(b"**"))
+}
+
+/// The next line of data, before the next keyword.
+fn data<'b>(source: &mut Source<'b>) -> Option<Source<'b>> {
+    let mut next = source.clone();
+    let found = line(&mut next).filter(|line| !line.rest().starts_with(b"*"))?;
+    *source = next;
+    Some(found)
+}
+
+/// What is read alone in a field.
+fn alone<T>(mut field: Source<'_>, read: impl FnOnce(&mut Source<'_>) -> Result<T, ReadError>) -> Result<T, ReadError> {
+    let found = read(&mut field)?;
+    let more = field.word();
+    if more.is_empty() { Ok(found) } else { Err(field.wrong(more, "a comma")) }
+}
+
+fn integer(field: Source<'_>, expected: &str) -> Result<i64, ReadError> {
+    alone(field, |field| field.integer(Scalar::I64, expected))
+}
+
+/// Letters as they are compared.
+fn capitals(text: &str) -> String {
+    text.split_whitespace().collect::<String>().to_uppercase()
+}
+
+/// A line with a keyword.
+struct Keyword<'b> {
+    line: Source<'b>,
+    /// Its name in capitals.
+    name: String,
+    /// The names of its parameters in capitals, and their values as typed.
+    parameters: HashMap<String, String>,
+}
+
+impl<'b> Keyword<'b> {
+    /// The keyword in a line and in those that continue it.
+    fn new(line: Source<'b>, source: &mut Source<'b>) -> Self {
+        let words = |line: &Source<'_>| String::from_utf8_lossy(line.rest().trim_ascii()).into_owned();
+        let mut text = words(&line);
+        while let Some(more) = text.ends_with(',').then(|| data(source)).flatten() {
+            text += &words(&more);
+        }
+        let mut parts = text[1..].split(',');
+        let name = capitals(parts.next().unwrap_or_default());
+        let parameter = |part: &str| {
+            let (name, value) = part.split_once('=').unwrap_or((part, ""));
+            (capitals(name), value.trim().trim_matches('"').to_owned())
+        };
+        Self { line, name, parameters: parts.map(parameter).collect() }
+    }
+
+    fn get(&self, parameter: &str) -> Option<&str> {
+        self.parameters.get(parameter).map(|value| &**value)
+    }
+
+    /// The value of a parameter that it needs.
+    fn needed(&self, parameter: &str) -> Result<&str, ReadError> {
+        let found = self.get(parameter).filter(|value| !value.is_empty());
+        found.ok_or_else(|| self.wrong(&format!("the keyword with `{parameter}`")))
+    }
+
+    fn wrong(&self, expected: &str) -> ReadError {
+        self.line.found(&format!("*{}", self.name), self.line.at, expected)
+    }
+}
+
+impl Reader<'_, '_> {
+    fn read(&mut self, keyword: &Keyword<'_>) -> Result<(), ReadError> {
+        let has = |parameter: &str| keyword.get(parameter).is_some();
+        let is_partial = match &*keyword.name {
+            "INCLUDE" | "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SYSTEM" => true,
+            "NODE" if keyword.get("SYSTEM").is_some_and(|system| !system.eq_ignore_ascii_case("R")) => true,
+            "NODE" | "ELEMENT" | "NSET" | "ELSET" => has("INPUT") || has("OFFSET"),
+            _ => false,
+        };
+        if is_partial {
+            let message = keyword.wrong("all nodes and elements in this file, with x, y and z").message;
+            return Err(ReadError::new(message, "write the whole mesh from the program that made it"));
+        }
+        match &*keyword.name {
+            "NODE" | "ELEMENT" if self.is_assembly => Ok(()),
+            "NSET" | "ELSET" if self.is_assembly && !has("INSTANCE") => Ok(()),
+            "NODE" => self.nodes(keyword),
+            "ELEMENT" => self.elements(keyword),
+            "NSET" => self.set(NODES, keyword),
+            "ELSET" => self.set(ELEMENTS, keyword),
+            "PART" | "INSTANCE" => self.part(keyword),
+            "ASSEMBLY" | "ENDINSTANCE" | "ENDASSEMBLY" => {
+                self.is_assembly = keyword.name != "ENDASSEMBLY";
+                Ok(())
+            }
+            // Materials, loads, steps and others.
+            _ => Ok(()),
+        }
+    }
+
+    /// Begins the only part or the only instance, which may have nodes and elements of its own.
+    fn part(&mut self, keyword: &Keyword<'_>) -> Result<(), ReadError> {
+        self.is_assembly = false;
+        let known = &mut self.parts[usize::from(keyword.name == "INSTANCE")];
+        *known += 1;
+        let mut is_other = *known > 1;
+        while let Some(line) = data(&mut self.source) {
+            for (_, field) in line.fields() {
+                is_other |= alone(field, |field| field.float(Scalar::F64, "a translation"))? != 0.0;
+            }
+        }
+        if is_other {
+            let message = keyword.wrong("a single part with a single instance, which is not moved").message;
+            return Err(ReadError::new(
+                message,
+                "write it without parts, which is an attribute of models in Abaqus/CAE",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Adds members to the set that a keyword names.
+    fn add(&mut self, kind: usize, name: Option<&str>, members: impl IntoIterator<Item = u32>) {
+        if let Some(name) = name {
+            self.sets[kind].entry(capitals(name)).or_insert((name.to_owned(), Vec::new())).1.extend(members);
+        }
+    }
+
+    fn nodes(&mut self, keyword: &Keyword<'_>) -> Result<(), ReadError> {
+        let first = self.builder.points() as u32;
+        while let Some(line) = data(&mut self.source) {
+            let (mut tag, mut point) = (None, [0.0; 3]);
+            for (at, field) in line.fields() {
+                if at == 0 {
+                    tag = Some(integer(field, "the number of a node")?);
+                } else if let Some(number) = point.get_mut(at - 1) {
+                    *number = alone(field, |field| field.coordinate(Scalar::F64))?;
+                } else {
+                    let place = line.place(line.at);
+                    let message = format!("has more than a number and three coordinates of a node {place}");
+                    return Err(ReadError::new(message, "write decimal points, not commas, and no normals"));
+                }
+            }
+            let tag = tag.ok_or_else(|| line.found(",", line.at, "the number of a node"))?;
+            self.tags[NODES].push(tag, self.builder.point_at(point.into(), line.at)?);
+        }
+        self.add(NODES, keyword.get("NSET"), first..self.builder.points() as u32);
+        Ok(())
+    }
+
+    fn elements(&mut self, keyword: &Keyword<'_>) -> Result<(), ReadError> {
+        let name = capitals(keyword.needed("TYPE")?);
+        let (kind, first) = (kind(&name), self.builder.cells.kinds.len() as u32);
+        // The number and the nodes of an element, which may go on in further lines.
+        let (mut tag, mut found) = (None, Vec::new());
+        let mut last = keyword.line.clone();
+        while let Some(line) = data(&mut self.source) {
+            let Some(kind) = kind else {
+                let is_last = !line.rest().trim_ascii_end().ends_with(b",");
+                *self.skipped.entry(name.clone()).or_default() += usize::from(is_last);
+                continue;
+            };
+            for (_, field) in line.fields() {
+                let start = field.at;
+                let number = integer(field, "the number of a node")?;
+                match tag {
+                    None => tag = Some(number),
+                    Some(_) => found.push(self.tags[NODES].find(number, "node", start, &line)?),
+                }
+            }
+            last = line;
+            if let Some(number) = tag.filter(|_| found.len() == kind.nodes) {
+                self.tags[ELEMENTS].push(number, self.builder.cells.kinds.len() as u32);
+                self.builder.around(kind.cell, &found[..kind.corners])?;
+                tag = None;
+                found.clear();
+            } else if found.len() > kind.nodes {
+                break;
+            }
+        }
+        if let (Some(_), Some(Kind { nodes, .. })) = (tag, kind) {
+            let (count, place) = (found.len(), last.place(last.at));
+            let message = format!("has an element with {count} nodes {place}; expected {nodes}, as {name} has");
+            return Err(ReadError::new(message, DAMAGED));
+        }
+        self.add(ELEMENTS, keyword.get("ELSET"), first..self.builder.cells.kinds.len() as u32);
+        Ok(())
+    }
+
+    /// Reads a set of nodes or of elements.
+    fn set(&mut self, kind: usize, keyword: &Keyword<'_>) -> Result<(), ReadError> {
+        let name = keyword.needed(["NSET", "ELSET"][kind])?;
+        let missing = |what: &str, name: &str, field: &Source<'_>| {
+            let (name, place) = (quoted(name.as_bytes()), field.place(field.at));
+            ReadError::new(format!("names the {what} {name} {place}, which it does not have before"), DAMAGED)
+        };
+        let set = |kind: usize, name: &str, field: &Source<'_>| {
+            let found = self.sets[kind].get(&capitals(name));
+            found.map(|(_, members)| members).ok_or_else(|| missing("set", name, field))
+        };
+        let mut members = Vec::new();
+        if let (NODES, Some(elements)) = (kind, keyword.get("ELSET")) {
+            let elements = set(ELEMENTS, elements, &keyword.line)?;
+            members.extend(elements.iter().flat_map(|&element| &self.builder.cells.corners[element as usize]));
+        }
+        while let Some(line) = data(&mut self.source) {
+            if keyword.parameters.contains_key("GENERATE") {
+                let [from, more, step] = generated(&line)?;
+                cells::spend(&mut self.spent, usize::try_from(more).unwrap_or(usize::MAX), self.limits)?;
+                members.extend((0..=more).filter_map(|at| self.tags[kind].get(from + at * step)));
+                continue;
+            }
+            for (_, field) in line.fields() {
+                let word = String::from_utf8_lossy(field.rest().trim_ascii());
+                match word.parse().map(|number| self.tags[kind].get(number)) {
+                    Err(_) => members.extend(set(kind, word.trim_matches('"'), &field)?),
+                    // Its type may be one that is not read.
+                    Ok(None) if kind == ELEMENTS && !self.skipped.is_empty() => {}
+                    Ok(None) => return Err(missing(["node", "element"][kind], &word, &field)),
+                    Ok(Some(member)) => members.push(member),
+                }
+            }
+        }
+        members.sort_unstable();
+        members.dedup();
+        cells::spend(&mut self.spent, members.len(), self.limits)?;
+        self.add(kind, Some(name), members);
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Cells, ReadError> {
+        if !self.skipped.is_empty() {
+            let all = self.skipped.iter().take(8).map(|(name, count)| format!("{count} of the type {name}"));
+            let note = format!("has elements that are not read: {}", all.collect::<Vec<_>>().join(", "));
+            if self.builder.is_empty() {
+                return Err(ReadError::new(note, "mesh the object with solid, plane or shell elements"));
+            }
+            self.builder.cells.notes.push(note);
+        }
+        let [nodes, elements] = self.sets;
+        for (key, (name, members)) in elements {
+            // Programs write the elements at a face beside its nodes, under one name.
+            if !nodes.contains_key(&key) {
+                let corners = members.iter().flat_map(|&member| &self.builder.cells.corners[member as usize]);
+                let points: Vec<u32> = corners.copied().collect();
+                cells::spend(&mut self.spent, points.len(), self.limits)?;
+                self.builder.group(name, points);
+            }
+        }
+        nodes.into_values().for_each(|(name, members)| self.builder.group(name, members));
+        self.builder.finish(&self.source, 1)
+    }
+}
+
+/// The first number of a range, how many steps follow, and the step.
+fn generated(line: &Source<'_>) -> Result<[i64; 3], ReadError> {
+    let expected = "a first number, a last one and a step";
+    let numbers: Vec<i64> = line.fields().map(|(_, field)| integer(field, expected)).collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [from, to] if from <= to => Ok([from, to.saturating_sub(from), 1]),
+        [from, to, step] if from <= to && step > 0 => Ok([from, to.saturating_sub(from) / step, step]),
+        _ => Err(line.found(&String::from_utf8_lossy(line.rest().trim_ascii()), line.at, expected)),
+    }
+}
+
+/// The kind of the elements of a type: a family, the number of nodes, of which the corners stand first, and letters.
+fn kind(name: &str) -> Option<Kind> {
+    /// The families of lines, of faces and of solids.
+    const FAMILIES: [&str; 3] = ["T2D T3D", "CPS CPE M3D R3D SFM3D STRI S", "C3D DC3D AC3D SC"];
+    let mut all =
+        (1..).zip(FAMILIES).flat_map(|(dimension, all)| all.split(' ').map(move |family| (dimension, family)));
+    all.find_map(|(dimension, family)| {
+        let rest = name.strip_prefix(family)?;
+        let end = rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len());
+        // Elements with a V have a variable number of nodes.
+        Kind::with(dimension, rest[..end].parse().ok().filter(|_| !rest.ends_with('V'))?)
+    })
+}

@@ -1,0 +1,139 @@
+//! Medit's format (`.mesh`) as text, as INRIA's library libMeshb documents it (<https://github.com/LoicMarechal/libMeshb>).
+//!
+//! References other than 0 are numbers of groups. Of elements of second order the corners are read, which stand first.
+
+use super::cells::Builder;
+use super::gmsh::Kind;
+use super::source::{Scalar, Source};
+use super::{Cells, Format, Limits, ReadError, content};
+use glam::DVec3;
+
+pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
+    if bytes.starts_with(&[1, 0, 0, 0]) || bytes.starts_with(&[0, 0, 0, 1]) {
+        let message = "is a binary file of Medit (.meshb); expected Medit's text (.mesh)";
+        return Err(ReadError::new(message, "convert it: `meshio convert FILE.meshb NEW.mesh`"));
+    }
+    let mut reader = Reader { source: Source::text(bytes), builder: Builder::new(limits) };
+    if reader.word() != b"MeshVersionFormatted" {
+        return Err(content::no_beginning(bytes, Format::Medit, "`MeshVersionFormatted`"));
+    }
+    // All versions are the same text.
+    reader.count("the version")?;
+    let mut dimension = 3;
+    loop {
+        match reader.word() {
+            b"End" => break,
+            b"" => {
+                reader.builder.cells.notes.push("has no `End`, so that its end may be missing".to_owned());
+                break;
+            }
+            b"Dimension" => dimension = reader.count("the dimension")?,
+            b"Vertices" if dimension == 2 || dimension == 3 => reader.vertices(dimension)?,
+            b"Vertices" => {
+                return Err(reader.source.found(&dimension.to_string(), reader.source.at, "the dimension 2 or 3"));
+            }
+            word => match kind(word) {
+                Some(kind) => reader.cells(kind)?,
+                None => reader.skip(word)?,
+            },
+        }
+    }
+    reader.builder.finish(&reader.source, 1)
+}
+
+struct Reader<'b, 'l> {
+    source: Source<'b>,
+    builder: Builder<'l>,
+}
+
+impl<'b> Reader<'b, '_> {
+    /// The next word outside of comments.
+    fn word(&mut self) -> &'b [u8] {
+        while self.source.peek().starts_with(b"#") {
+            self.source.line();
+        }
+        self.source.word()
+    }
+
+    fn count(&mut self, expected: &str) -> Result<u64, ReadError> {
+        let word = self.word();
+        self.source.at -= word.len();
+        self.source.count(Scalar::I64, expected)
+    }
+
+    fn vertices(&mut self, dimension: u64) -> Result<(), ReadError> {
+        let count = self.count("the number of vertices")?;
+        self.builder.expect(count, 0)?;
+        for _ in 0..count {
+            let start = self.source.at;
+            let mut next = || self.source.coordinate(Scalar::F64);
+            let point = DVec3::new(next()?, next()?, if dimension == 3 { next()? } else { 0.0 });
+            let index = self.builder.point_at(point, start)?;
+            self.group(0, &[index])?;
+        }
+        Ok(())
+    }
+
+    fn cells(&mut self, kind: Kind) -> Result<(), ReadError> {
+        for _ in 0..self.count("the number of elements")? {
+            let mut corners = [0; 8];
+            for at in 0..kind.nodes {
+                let start = self.source.at;
+                let number = self.source.integer(Scalar::I64, "the number of a vertex")?;
+                if let Some(corner) = corners[..kind.corners].get_mut(at) {
+                    *corner = self.builder.corner(number.saturating_sub(1), start, &self.source)?;
+                }
+            }
+            self.builder.around(kind.cell, &corners[..kind.corners])?;
+            self.group(kind.dimension, &corners[..kind.corners])?;
+        }
+        Ok(())
+    }
+
+    /// Reads a reference, and adds points to its group.
+    fn group(&mut self, dimension: i64, points: &[u32]) -> Result<(), ReadError> {
+        match self.source.integer(Scalar::I64, "a reference")? {
+            0 => Ok(()),
+            reference => self.builder.number((dimension, reference), points),
+        }
+    }
+
+    /// Goes to the next keyword, and tells of cells that it leaves out.
+    fn skip(&mut self, keyword: &[u8]) -> Result<(), ReadError> {
+        /// How keywords begin that are about other things than cells.
+        const OTHERS: [&str; 9] =
+            ["Required", "Corners", "Ridges", "Normal", "Tangent", "SubDomain", "Geometry", "Identifier", "AngleOf"];
+        let name = String::from_utf8_lossy(keyword);
+        if !keyword[0].is_ascii_alphabetic() {
+            return Err(self.source.wrong(keyword, "a keyword, such as `Tetrahedra`"));
+        }
+        // The first tells of all others.
+        if self.builder.cells.notes.is_empty() && !OTHERS.iter().any(|other| name.starts_with(other)) {
+            let place = self.source.place(self.source.at);
+            self.builder.cells.notes.push(format!("has `{name}` {place}, which is not read"));
+        }
+        loop {
+            match self.source.peek().first() {
+                Some(b'#') => self.source.line(),
+                Some(first) if !first.is_ascii_alphabetic() => self.source.word(),
+                _ => return Ok(()),
+            };
+        }
+    }
+}
+
+/// The kind of the elements behind a keyword.
+fn kind(keyword: &[u8]) -> Option<Kind> {
+    let second = keyword.strip_suffix(b"P2").or(keyword.strip_suffix(b"Q2"));
+    let types = match second.unwrap_or(keyword) {
+        b"Edges" => [1, 8],
+        b"Triangles" => [2, 9],
+        b"Quadrilaterals" => [3, 10],
+        b"Tetrahedra" => [4, 11],
+        b"Hexahedra" | b"Hexaedra" => [5, 12],
+        b"Prisms" | b"Wedges" | b"Pentahedra" => [6, 13],
+        b"Pyramids" => [7, 14],
+        _ => return None,
+    };
+    Kind::of(types[usize::from(second.is_some())])
+}

@@ -1,0 +1,114 @@
+//! Cells of files in the order of elements.
+
+use super::cells::{Cells, along};
+use super::{ReadError, Volume};
+use glam::DVec3;
+use localshape_sim::geometry::volume_by_faces;
+use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
+use std::collections::HashSet;
+
+/// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
+const FLAT: f64 = 1e-12;
+
+/// The elements of a volume.
+pub(super) struct Parts {
+    dimension: Dimension,
+    cells: IndexLists,
+    turned: usize,
+    /// Cells without area or volume: how many, and the first in the file.
+    flat: (usize, usize),
+    known: HashSet<[u32; 8]>,
+}
+
+impl Parts {
+    /// The parts of a volume with about this number of cells.
+    pub(super) fn new(dimension: Dimension, cells: usize) -> Self {
+        Self { dimension, cells: IndexLists::default(), turned: 0, flat: (0, 0), known: HashSet::with_capacity(cells) }
+    }
+
+    /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group.
+    pub(super) fn add(&mut self, at: usize, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) {
+        let mut sorted = cell.to_vec();
+        sorted.sort_unstable();
+        let least = if self.dimension == Dimension::Plane { 3 } else { 4 };
+        if sorted.len() <= 8 {
+            let mut key = [u32::MAX; 8];
+            key[..sorted.len()].copy_from_slice(&sorted);
+            if !self.known.insert(key) {
+                return;
+            }
+        }
+        let mut is_flat = cell.len() < least || sorted.windows(2).any(|pair| pair[0] == pair[1]);
+        if !is_flat && kind != ElementKind::Other {
+            is_flat = !self.order(kind, cell, points);
+        }
+        if is_flat {
+            self.flat = (self.flat.0 + 1, if self.flat.0 == 0 { at } else { self.flat.1 });
+            return;
+        }
+        self.cells.push(cell);
+    }
+
+    /// Puts the corners of a cell into the expected order. Returns false if it has no area or volume.
+    fn order(&mut self, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) -> bool {
+        let (mut low, mut high) = (points[cell[0] as usize], points[cell[0] as usize]);
+        cell.iter().for_each(|&corner| {
+            low = low.min(points[corner as usize]);
+            high = high.max(points[corner as usize]);
+        });
+        let size = (high - low).max_element();
+        let whole = if kind == ElementKind::Polygon { size * size } else { size * size * size };
+        let mut measure = volume_by_faces(kind, cell, points);
+        // A cell that is listed along its axes where it should be listed around, or the other way, crosses itself: it is nearly flat.
+        let other = match (kind, &*cell) {
+            (ElementKind::Hexahedron, &[a, b, c, d, e, f, g, h]) => along(&[a, b, c, d, e, f, g, h]).to_vec(),
+            (ElementKind::Polygon, &[a, b, c, d]) => vec![a, b, d, c],
+            _ => Vec::new(),
+        };
+        let mut is_other = false;
+        if !other.is_empty() {
+            let by_other = volume_by_faces(kind, &other, points);
+            if by_other.abs() > (2.0 * measure.abs()).max(FLAT * whole) {
+                (measure, is_other) = (by_other, true);
+                cell.copy_from_slice(&other);
+            }
+        }
+        if measure.abs() <= FLAT * whole {
+            return false;
+        }
+        if measure < 0.0 {
+            turn(kind, cell);
+        }
+        // Programs list wedges from either triangle: Gmsh from the lower, VTK from the upper.
+        self.turned += usize::from(is_other || measure < 0.0 && kind != ElementKind::Wedge);
+        true
+    }
+
+    pub(super) fn volume(self, mut cells: Cells, solids: Solids) -> Result<Volume, ReadError> {
+        let (flat, first) = self.flat;
+        if flat > 0 {
+            let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
+            let shown: Vec<String> = cells.corners[first].iter().take(8).map(u32::to_string).collect();
+            let corners = format!("cell {first}, counted from 0, with the points {}", shown.join(", "));
+            if self.cells.is_empty() {
+                let message = format!("has only cells without {what}; the first is {corners}");
+                return Err(ReadError::new(message, "mesh the object again"));
+            }
+            cells.notes.push(match flat {
+                1 => format!("has a cell without {what}, which is left out: {corners}"),
+                _ => format!("has {flat} cells without {what}, which are left out; the first is {corners}"),
+            });
+        }
+        Ok(cells.volume(self.dimension, solids, &self.cells, self.turned))
+    }
+}
+
+/// Turns a cell over.
+fn turn(kind: ElementKind, cell: &mut [u32]) {
+    match kind {
+        ElementKind::Tetrahedron => cell.swap(1, 2),
+        ElementKind::Pyramid => cell.swap(1, 3),
+        ElementKind::Wedge | ElementKind::Hexahedron => cell.rotate_left(cell.len() / 2),
+        _ => cell.reverse(),
+    }
+}
