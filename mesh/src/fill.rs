@@ -9,7 +9,9 @@ mod graded;
 mod lattice;
 mod parts;
 mod polyhedra;
+mod sight;
 mod tetrahedra;
+mod union;
 
 use super::{Flaws, Group, Surface};
 use glam::DVec3;
@@ -26,7 +28,7 @@ pub enum Fill {
         /// Their side.
         side: f64,
     },
-    /// Cubes that are coarser by factors of two away from the surface.
+    /// Cubes of twice the side away from the surface.
     Graded {
         /// The side of those at the surface.
         side: f64,
@@ -56,6 +58,23 @@ pub struct Cage {
     pub convex: bool,
     /// For each group of points of the surface, the nodes that carry some of them.
     pub groups: Vec<Group>,
+    /// The volume inside that each node carries (m³); `None` if the nodes of an element share equally what is filled of it.
+    pub volumes: Option<Vec<f64>>,
+    /// The volume that lies in several shells of a closed surface, which cross or lie in each other (m³). It is filled once.
+    pub overlap: f64,
+}
+
+impl Cage {
+    /// The elements filled in part that share no node with a full one: the body is thinner than elements there.
+    pub fn thin(&self) -> Vec<usize> {
+        let Some(filled) = &self.filled else { return Vec::new() };
+        let mut is_firm = vec![false; self.nodes.len()];
+        for (nodes, _) in self.elements.iter().zip(filled).filter(|(_, filled)| **filled == 1.0) {
+            nodes.iter().for_each(|&node| is_firm[node as usize] = true);
+        }
+        let is_thin = |&element: &usize| !self.elements[element].iter().any(|&node| is_firm[node as usize]);
+        (0..self.elements.len()).filter(is_thin).collect()
+    }
 }
 
 /// A filled surface.
@@ -99,13 +118,16 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
     lattice::check(&surface, fill, side, most)?;
     surface.refine(side, most);
-    let filled = match fill {
+    let mut filled = match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
         Fill::Graded { side } => cubes::fill(surface, flaws, side, true, most),
         Fill::Polyhedra { side } => polyhedra::fill(surface, flaws, side, most),
         Fill::Tetrahedra { side } => tetrahedra::fill(surface, flaws, side, most),
-    };
-    filled.map(Filled::with_groups)
+    }?;
+    if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
+        filled.cage.overlap = cubes::overlap_of(&filled, side, most)?;
+    }
+    Ok(filled.with_groups())
 }
 
 impl Filled {

@@ -14,12 +14,15 @@ use super::edges::{EdgeUse, Sets, net};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
+use std::collections::HashMap;
 
 /// A surface that is asked for its inside.
 pub(crate) struct Inside {
     columns: Columns,
     /// The triangles that close the surface; none for most.
-    caps: Caps,
+    caps: Vec<[DVec3; 3]>,
+    /// The same ones, or fewer that hide the same from each point.
+    hiding: Caps,
 }
 
 /// Points in rows along x.
@@ -44,38 +47,64 @@ impl Inside {
     pub(crate) fn new(surface: &Surface) -> Self {
         let (points, mut caps) = caps(surface);
         let mut all = surface.triangles.clone();
+        let hiding;
         if caps.len() > all.len() {
             // Triangles that hardly hang together are closed with less by each other's backs, which leaves nothing to cross.
             caps = all.iter().map(|&[a, b, c]| [a, c, b]).collect();
+            hiding = caps.clone();
             all.clear();
         } else {
+            hiding = simple(&points, &caps);
             all.extend(&caps);
         }
-        let corners = |&cap: &[u32; 3]| cap.map(|point| points[point as usize]);
-        Self { caps: Caps::new(caps.iter().map(corners).collect()), columns: Columns::new(&points, &all) }
+        let corners =
+            |caps: Vec<[u32; 3]>| caps.into_iter().map(|cap| cap.map(|point| points[point as usize])).collect();
+        Self { columns: Columns::new(&points, &all), caps: corners(caps), hiding: Caps::new(corners(hiding)) }
+    }
+
+    /// Whether points of a grid lie in several shells of a surface, which is taken to be closed.
+    pub(crate) fn is_several(surface: &Surface, grid: &Grid) -> bool {
+        let columns = Columns::new(&surface.points, &surface.triangles);
+        let closed = Self { columns, caps: Vec::new(), hiding: Caps::new(Vec::new()) };
+        (0..grid.counts[1] * grid.counts[2]).into_par_iter().any(|row| {
+            let mut out = Vec::new();
+            closed.row(grid, row, &mut out);
+            out.iter().any(|&(around, _)| around > 1)
+        })
+    }
+
+    /// About how many triangles are looked at to tell whether a point is inside, beside those that a line crosses.
+    pub(crate) fn effort(&self) -> f64 {
+        let all = self.hiding.triangles.len() as f64;
+        all.min(64.0 * libm::log2(all.max(1.0)))
     }
 
     /// The triangles that were added to close the surface.
     pub(crate) fn caps(&self) -> &[[DVec3; 3]] {
-        &self.caps.triangles
+        &self.caps
     }
 
     /// Whether a point is inside.
     pub(crate) fn contains(&self, point: DVec3) -> bool {
+        self.is_inside(self.around(point), point)
+    }
+
+    /// The winding number of a point about the surface with its caps.
+    pub(crate) fn around(&self, point: DVec3) -> i32 {
         let mut around = 0;
         self.columns.crossings(point.y, point.z, |crossing| {
             if crossing.is_after(point.x) {
                 around += crossing.sign;
             }
         });
-        self.is_inside(around, point)
+        around
     }
 
     /// Whether a point is inside, from its winding number about the closed surface.
     fn is_inside(&self, around: i32, point: DVec3) -> bool {
-        match self.caps.nodes.is_empty() {
+        match self.caps.is_empty() {
             true => around > 0,
-            false => f64::from(around) - self.caps.winding(point) > 0.5,
+            false => f64::from(around) - self.hiding.winding(point) > 0.5,
         }
     }
 
@@ -303,6 +332,52 @@ fn caps(surface: &Surface) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (points, caps)
 }
 
+/// Fans with one triangle in place of those whose open edges are a straight line, as the parts of an edge are that was divided, and in
+/// place of three that are a triangle.
+fn simple(points: &[DVec3], caps: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut fans = straightened(points, caps);
+    // What began in the midst of a line is now before what begins at its start.
+    fans.reverse();
+    fans = straightened(points, &fans);
+    fans.sort_by_key(|fan| fan[0]);
+    let whole = |fan: &[[u32; 3]]| match *fan {
+        [[_, a, b], [_, c, d], [_, e, f]] if b == c && d == e && f == a => vec![[a, c, e]],
+        [[_, a, b], [_, c, d], [_, e, f]] if b == e && f == c && d == a => vec![[a, e, c]],
+        _ => fan.to_vec(),
+    };
+    fans.chunk_by(|one, other| one[0] == other[0]).flat_map(whole).collect()
+}
+
+/// Fans in which open edges that go on straight are one.
+fn straightened(points: &[DVec3], caps: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    /// How far, as a part of its distance from the start of a line, a point on the line may be beside it.
+    const BESIDE: f64 = 1e-4;
+    let mut next = HashMap::new();
+    for (at, &[middle, from, _]) in caps.iter().enumerate() {
+        // A point from which several edges start ends lines.
+        next.entry((middle, from)).and_modify(|next| *next = None).or_insert(Some(at));
+    }
+    let mut is_done = vec![false; caps.len()];
+    let mut fewer = Vec::new();
+    for (at, &[middle, from, mut to]) in caps.iter().enumerate() {
+        if std::mem::replace(&mut is_done[at], true) {
+            continue;
+        }
+        let start = points[from as usize];
+        let along = (points[to as usize] - start).normalize_or_zero();
+        while let Some(&Some(beyond)) = next.get(&(middle, to)) {
+            let way = points[caps[beyond][2] as usize] - start;
+            let is_straight = way.cross(along).length() <= BESIDE * way.dot(along);
+            if !is_straight || std::mem::replace(&mut is_done[beyond], true) {
+                break;
+            }
+            to = caps[beyond][2];
+        }
+        fewer.push([middle, from, to]);
+    }
+    fewer
+}
+
 /// Triangles, and the parts of a sphere that they hide.
 struct Caps {
     triangles: Vec<[DVec3; 3]>,
@@ -472,6 +547,36 @@ mod tests {
             let point = grid.first + grid.side * DVec3::from_array([at % 9, at / 9 % 9, at / 81].map(|at| at as f64));
             assert!(blocks.iter().zip(&all).all(|(block, inside)| block.contains(point) == inside[at]));
         }
+    }
+
+    /// A point in a slanted face counts as moved along y, and along z only if that leaves it in the face.
+    #[test]
+    fn points_in_faces_are_moved_along_y_before_z() {
+        for [a, b] in [[0.5, 0.25], [0.5, -0.25], [-0.5, 0.25], [-0.5, -0.25], [0.0, 0.25], [0.0, -0.25]] {
+            // All numbers are exact.
+            let slanted = |at: DVec3| DVec3::new(at.x + a * at.y + b * at.z, at.y, at.z);
+            let cube = cube();
+            let inside = Inside::new(&Surface { points: cube.points.iter().map(|&at| slanted(at)).collect(), ..cube });
+            let is_inside = if a == 0.0 { b > 0.0 } else { a > 0.0 };
+            for [y, z] in [[0.25, 0.5], [0.75, 0.25]] {
+                assert_eq!(inside.contains(slanted(DVec3::new(1.0, y, z))), is_inside, "{a} {b}");
+                assert_eq!(inside.contains(slanted(DVec3::new(0.0, y, z))), !is_inside, "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn open_edges_that_are_divided_are_closed_by_few_triangles() {
+        let mut surface = cube();
+        surface.triangles.truncate(10);
+        assert_eq!(Inside::new(&surface).hiding.triangles.len(), 4);
+        surface.refine(0.05, 100_000);
+        let inside = Inside::new(&surface);
+        assert!(inside.caps().len() > 80 && inside.hiding.triangles.len() == 4);
+        // A triangle by itself is closed by its back.
+        surface = Surface { triangles: vec![[0, 1, 2]], ..cube() };
+        surface.refine(0.05, 100_000);
+        assert_eq!(Inside::new(&surface).hiding.triangles.len(), 1);
     }
 
     #[test]

@@ -278,6 +278,49 @@ fn graded_cubes_are_coarse_inside() {
     println!("{error} {:?}", error.help);
 }
 
+/// The mean square distance of a closed surface's inside from the origin: of tetrahedra between it and its triangles.
+fn spread(surface: &Surface) -> f64 {
+    let (mut sum, mut volume) = (0.0, 0.0);
+    for of in &surface.triangles {
+        let [a, b, c] = of.map(|point| surface.points[point as usize]);
+        let own = a.dot(b.cross(c)) / 6.0;
+        let all = a + b + c;
+        sum += own * (all.length_squared() + a.length_squared() + b.length_squared() + c.length_squared()) / 20.0;
+        volume += own;
+    }
+    sum / volume
+}
+
+/// The moment of inertia of a ball of graded cubes tends to the right one with the square of the side, as that of plain cubes does.
+#[test]
+fn moments_of_inertia_converge() {
+    let surface = ball(DVec3::ZERO, 1.0, 96);
+    let right = spread(&surface);
+    let error = |with: Fill| {
+        let filled = fill(&surface, with, MOST).unwrap();
+        let (mut volumes, mut squares) = (vec![0.0; filled.cage.nodes.len()], 0.0);
+        for (element, nodes) in filled.cage.elements.iter().enumerate() {
+            let own = filled.cage.filled.as_ref().map_or(1.0, |parts| parts[element]) * volume_of(&filled, element);
+            nodes.iter().for_each(|&node| volumes[node as usize] += own / nodes.len() as f64);
+        }
+        let all: f64 = volumes.iter().sum();
+        let volumes = filled.cage.volumes.as_ref().unwrap_or(&volumes);
+        let centre: DVec3 = filled.cage.nodes.iter().zip(volumes).map(|(&at, volume)| at * volume).sum();
+        assert!((volumes.iter().sum::<f64>() / all - 1.0).abs() < 1e-12 && (centre / all).length() < 1e-4, "{centre}");
+        filled.cage.nodes.iter().zip(volumes).for_each(|(at, volume)| squares += at.length_squared() * volume);
+        squares / all / right - 1.0
+    };
+    for cells in [10.0, 20.0, 40.0, 80.0] {
+        let side = 2.0 / cells;
+        let [cubes, graded] = [Fill::Cubes { side }, Fill::Graded { side }].map(error);
+        println!("{cells} cells: {cubes} {graded}");
+        // The mass of cubes is in their corners, too far out. Graded ones are at most as wrong as cubes of twice the side.
+        let square = side * side / right;
+        assert!((cubes / square - 1.0).abs() < 0.01, "{cubes} with {cells} cells");
+        assert!(graded > cubes && graded < 4.0 * square, "{graded} with {cells} cells");
+    }
+}
+
 /// Graded cubes are of the material of plain ones: the same deformation of a block needs the same energy.
 #[test]
 fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
@@ -316,6 +359,30 @@ fn open_surfaces_are_filled_to_the_hole() {
     let half = cubes(&surface, 0.1);
     let part = filled_volume(&half, 0.1) / whole;
     assert!((part - 0.5).abs() < 0.005, "{part}");
+    assert_eq!(bodies(&half), 1);
+}
+
+/// Cells between the opening and the far end of an open block are filled as those of the closed one: what closes it bounds them, too.
+#[test]
+fn cells_behind_an_opening_are_filled_as_if_it_were_closed() {
+    let closed = block(DVec3::ZERO, DVec3::new(1.0, 0.55, 0.35));
+    for (axis, places) in [[2, 3], [6, 7], [10, 11]].into_iter().enumerate() {
+        let mut open = closed.clone();
+        open.triangles = (0..12).filter(|at| !places.contains(at)).map(|at| closed.triangles[at]).collect();
+        let [all, some] = [&closed, &open].map(|surface| cubes(surface, 0.1));
+        assert_eq!(some.flaws.boundary, 4);
+        let part = |filled: &Filled, element: usize| filled.cage.filled.as_ref().map_or(1.0, |parts| parts[element]);
+        let place = |filled: &Filled, element: usize| filled.cage.nodes[filled.cage.elements[element][0] as usize];
+        let end = [0.6, 0.3, 0.1][axis];
+        let mut compared = 0;
+        for element in (0..all.cage.elements.len()).filter(|&element| place(&all, element)[axis] < end) {
+            let at = place(&all, element);
+            let same = (0..some.cage.elements.len()).find(|&other| place(&some, other).distance(at) < 1e-9).unwrap();
+            assert!((part(&some, same) - part(&all, element)).abs() < 1e-9, "{at}");
+            compared += usize::from(part(&all, element) < 1.0);
+        }
+        assert!(compared > 20);
+    }
 }
 
 #[test]
@@ -429,6 +496,19 @@ fn soups_of_triangles_are_filled_too() {
     println!("{} triangles in {:?}", soup.triangles.len(), start.elapsed());
     let (expected, found) = (whole.mended().0.measures().volume, filled_volume(&filled, 0.06));
     assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+    assert_eq!(bodies(&filled), 1);
+}
+
+/// Cells of triangles that hang together with none hang together all the same, also where hardly a part of them is inside.
+#[test]
+fn cells_of_loose_triangles_hang_together() {
+    let mut soup = apart(&ball(DVec3::ZERO, 1.0, 60));
+    for triangle in soup.points.chunks_mut(3) {
+        let middle = triangle.iter().sum::<DVec3>() / 3.0;
+        triangle.iter_mut().for_each(|point| *point = middle + (*point - middle) * 0.7);
+    }
+    let filled = cubes(&soup, 0.15);
+    assert_eq!(bodies(&filled), 1);
 }
 
 /// Whatever a surface is, it is filled or refused, and what is filled carries all points.

@@ -6,11 +6,11 @@ pub(crate) use summary::MeshSummary;
 
 use super::limits::Limits;
 use crate::reading::beside::{self, Wrong};
-use crate::reading::words::{count, list, nearest};
+use crate::reading::words::{count, list, nearest, short};
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
-use localshape_mesh::{self as mesh, Flaws, Format, Mesh, ReadError};
+use localshape_mesh::{self as mesh, Cage, Flaws, Format, Mesh, ReadError};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -18,6 +18,9 @@ use std::path::Path;
 fn endings() -> Vec<&'static str> {
     Format::ALL.into_iter().flat_map(Format::endings).copied().collect()
 }
+
+/// A surface is said to be thinner than its elements if this part of them is where it is.
+const THIN: f64 = 0.3;
 
 /// The number of cells along the longest side of a filled surface, unless a scene tells another.
 pub(crate) const CELLS: u32 = 20;
@@ -172,16 +175,54 @@ pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
     .collect()
 }
 
-/// What is wrong with a surface and is left, in words; empty for nothing.
-pub(crate) fn left(flaws: &Flaws) -> Vec<String> {
-    [
+/// What is wrong with a surface and is left: the predicate of a sentence about it, and a remedy. `closed` says whether it has an inside
+/// all the same.
+pub(crate) fn left(flaws: &Flaws, closed: bool) -> Option<(String, String)> {
+    let left: Vec<String> = [
         (flaws.boundary, "open edge", ""),
         (flaws.non_manifold, "edge", " of three triangles or more"),
         (flaws.inconsistent, "edge", " whose triangles look to different sides"),
     ]
     .into_iter()
     .filter_map(|(number, one, what)| Some(format!("{}{what}", several(number, one)?)))
-    .collect()
+    .collect();
+    let (what, help) = match closed {
+        true => ("where parts may be joined or not", "separate or join them in the program that made it"),
+        false => (
+            "and is filled where its triangles enclose most",
+            "close it with `weld` if `localshape check FILE` proposes it, or in the program that made it, unless the \
+             elements are right",
+        ),
+    };
+    (!left.is_empty()).then(|| (format!("has {}, {what}", list(&left, "and", str::to_owned)), help.to_owned()))
+}
+
+/// What elements show of a surface of this volume that they fill: predicates of sentences about it, with a remedy each. Their side and the
+/// longest one of the surface have one unit; `is_typed` says whether the side was given, and not a number of cells.
+pub(crate) fn doubts(cage: &Cage, volume: f64, side: f64, longest: f64, is_typed: bool) -> Vec<(String, String)> {
+    let mut doubts = Vec::new();
+    if cage.overlap > 0.0 {
+        let part = short(100.0 * cage.overlap / volume);
+        let message = format!(
+            "has shells that cross or lie in each other: {part} % of their volume is in several, and counts once"
+        );
+        doubts.push((message, "unite them in the program that made it, unless the elements are right".to_owned()));
+    }
+    let thin = cage.thin();
+    if !thin.is_empty() && thin.len() as f64 >= THIN * cage.elements.len() as f64 {
+        let parts = cage.filled.iter().flat_map(|filled| thin.iter().map(|&element| filled[element]));
+        let thickness = side * parts.sum::<f64>() / thin.len() as f64;
+        let [number, all] = [thin.len(), cage.elements.len()].map(|number| count(number as u128));
+        let message =
+            format!("is thinner than its elements where {number} of {all} are, and bends less there than it would");
+        // Two elements across it.
+        let finer = match is_typed {
+            true => format!("side = {} or less", short(0.5 * thickness)),
+            false => format!("cells = {} or more", (2.0 * longest / thickness).ceil()),
+        };
+        doubts.push((message, format!("use {finer}, or make it thicker")));
+    }
+    doubts
 }
 
 /// A number of things; `None` for none.

@@ -238,12 +238,69 @@ fn flaws_are_told_with_their_number() {
     let open = CUBE.replace("f 2 4 8 6\n", "");
     let message = "`body.obj` has 4 open edges, and is filled where its triangles enclose most";
     assert_eq!(warned(&open), message);
-    let far = |line: &str| line.split(' ').skip(1).map(|at| at.parse::<f64>().unwrap() + 3.0).collect::<Vec<_>>();
-    let points = CUBE.lines().filter(|line| line.starts_with('v')).map(far);
-    let points: String = points.map(|at| format!("v {} {} {}\n", at[0], at[1], at[2])).collect();
-    let faces = "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
-    let two = format!("{CUBE}{points}{faces}");
+    let two = two_cubes([3.0; 3]);
     assert_eq!(warned(&two), "`body.obj` makes 2 parts that share no node, so nothing holds them together");
+    let crossing = two_cubes([0.5, 0.25, 0.0]);
+    let message =
+        "`body.obj` has shells that cross or lie in each other: 18.75 % of their volume is in several, and counts once";
+    assert_eq!(warned(&crossing), message);
+    // Cubes that touch in an edge, whose two points they share.
+    let touching = two_cubes([1.0, 1.0, 0.0]);
+    let message = "`body.obj` has 1 edge of three triangles or more, where parts may be joined or not";
+    assert!(warned(&touching).starts_with(message), "{}", warned(&touching));
+    let plate = CUBE.replace(" 1\n", " 0.03\n").replace(" 1\nf", " 0.03\nf");
+    let message = "`body.obj` is thinner than its elements where 64 of 64 are, and bends less there than it would";
+    assert_eq!(warned(&plate), message);
+    let help = |lines: &str| {
+        let scene = loaded(&with("body.obj", lines), &[("body.obj", &plate)]);
+        scene.warnings[0].help.clone().unwrap()
+    };
+    assert_eq!(help("fill.cells = 8"), "use cells = 67 or more, or make it thicker");
+    assert_eq!(help("fill.side = 0.125"), "use side = 0.015 or less, or make it thicker");
+    assert_eq!(loaded(&with("body.obj", "fill.cells = 67"), &[("body.obj", &plate)]).warnings.len(), 0);
+}
+
+/// Two unit cubes, the second one moved.
+fn two_cubes(by: [f64; 3]) -> String {
+    let points = CUBE.lines().filter(|line| line.starts_with('v'));
+    let moved = points.map(|line| {
+        let at: Vec<f64> = line.split(' ').skip(1).map(|at| at.parse().unwrap()).collect();
+        format!("v {} {} {}\n", at[0] + by[0], at[1] + by[1], at[2] + by[2])
+    });
+    let faces = "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+    format!("{CUBE}{}{faces}", moved.collect::<String>())
+}
+
+/// Each piece has its own mass, and shells that cross have that of what they enclose together.
+#[test]
+fn pieces_have_their_own_mass_and_shells_that_cross_that_of_their_union() {
+    for fill in ["cubes", "graded"] {
+        let masses = |mesh: &str, cells: u32| {
+            let fill = format!("fill = {{ with = '{fill}', cells = {cells} }}");
+            let scene = loaded(&with("body.obj", &fill), &[("body.obj", mesh)]);
+            let body = &scene.bodies[0].body;
+            // The first cube carries the first points of the surface.
+            let mut masses = [0.0; 2];
+            let first = body.elements.iter().flat_map(|nodes| nodes.iter().map(|&node| [nodes[0], node]));
+            let mut leads: Vec<u32> = (0..body.len() as u32).collect();
+            for _ in 0..64 {
+                for [one, other] in first.clone() {
+                    let least = leads[one as usize].min(leads[other as usize]);
+                    (leads[one as usize], leads[other as usize]) = (least, least);
+                }
+            }
+            leads.iter().zip(&body.mass).for_each(|(&lead, mass)| masses[usize::from(lead > 0)] += mass);
+            masses
+        };
+        // At a distance of a quarter of a cell.
+        for mass in masses(&two_cubes([1.1, 0.0, 0.0]), 5) {
+            assert!((mass - 1000.0).abs() < 0.01, "{fill}: {mass}");
+        }
+        for cells in [3, 8] {
+            let sum: f64 = masses(&two_cubes([0.5, 0.25, 0.0]), cells).iter().sum();
+            assert!((sum - 1625.0).abs() < 0.01, "{fill}: {sum}");
+        }
+    }
 }
 
 #[test]

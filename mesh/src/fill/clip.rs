@@ -66,7 +66,7 @@ impl Polygon {
     }
 
     fn fan(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
-        self.corners().windows(2).skip(1).map(|pair| [pair[0], pair[1]])
+        fan(self.corners())
     }
 
     /// The parts between neighbouring planes across an axis, with the numbers of the cells between them. What lies in a
@@ -89,6 +89,50 @@ impl Polygon {
         }
         visit(last, rest);
     }
+}
+
+/// The corners of a polygon after the first one, in pairs that make triangles with it.
+fn fan(corners: &[DVec3]) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    corners.windows(2).skip(1).map(|pair| [pair[0], pair[1]])
+}
+
+/// The volume between a polygon and a plane across x, positive where the inside is there, and its area seen along x with the same
+/// sign.
+fn under(corners: &[DVec3], plane: f64) -> [f64; 2] {
+    let base = DVec3::new(plane, 0.0, 0.0);
+    let origin = corners[0] - base;
+    let (mut volume, mut shadow) = (0.0, 0.0);
+    for [b, c] in fan(corners) {
+        let [b, c] = [b - base, c - base];
+        let area = 0.5 * (b - origin).cross(c - origin).x;
+        shadow += area;
+        volume += area * (origin.x + b.x + c.x) / 3.0;
+    }
+    [volume, shadow]
+}
+
+/// The volume inside a cell with this lowest corner that a polygon adds as one of those that bound it, but for whole cells: only the
+/// part that contains the highest corner of the cell has one more.
+///
+/// By the divergence theorem for the field x, that is the volume under the polygon and the inside of the upper face across x. The area
+/// of the latter follows from its outline in the same way: from the sides of polygons in that face, and from where they end at its
+/// upper edge along z.
+pub(super) fn volume(corners: &[DVec3], low: DVec3) -> f64 {
+    if corners.is_empty() {
+        return 0.0;
+    }
+    let [mut volume, _] = under(corners, low.x);
+    let high = low + 1.0;
+    for (at, from) in corners.iter().enumerate() {
+        let to = corners[(at + 1) % corners.len()];
+        let is_at_edge = [from.y == high.y, to.y == high.y];
+        if from.x == high.x && to.x == high.x && is_at_edge != [true, true] {
+            volume -= (0.5 * (from.y + to.y) - low.y) * (to.z - from.z);
+            volume += if is_at_edge[1] { to.z - low.z } else { 0.0 };
+            volume -= if is_at_edge[0] { from.z - low.z } else { 0.0 };
+        }
+    }
+    volume
 }
 
 /// The part of a triangle in a cell.
@@ -121,15 +165,7 @@ pub(super) fn cut(corners: [DVec3; 3], lattice: &Lattice, mut visit: impl FnMut(
 fn pieces_of(triangle: u32, corners: [DVec3; 3], lattice: &Lattice) -> Vec<Piece> {
     let mut pieces = Vec::new();
     cut(corners, lattice, |cell, polygon| {
-        let base = DVec3::new(f64::from(cell[0]), 0.0, 0.0);
-        let origin = polygon.corners[0] - base;
-        let (mut volume, mut shadow) = (0.0, 0.0);
-        for [b, c] in polygon.fan() {
-            let [b, c] = [b - base, c - base];
-            let area = 0.5 * (b - origin).cross(c - origin).x;
-            shadow += area;
-            volume += area * (origin.x + b.x + c.x) / 3.0;
-        }
+        let [volume, shadow] = under(polygon.corners(), f64::from(cell[0]));
         pieces.push(Piece { cell: lattice.key(cell), triangle, volume, shadow });
     });
     pieces

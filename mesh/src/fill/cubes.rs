@@ -2,12 +2,13 @@
 
 use super::clip::{self, Piece};
 use super::graded::{self, Graded};
-use super::lattice::{CORNERS, Cell, Full, JOINED, Lattice, Nodes, corner, too_many};
-use super::parts::{Parts, Scene};
+use super::lattice::{CORNERS, Cell, JOINED, Lattice, Nodes, corner, too_many};
+use super::parts::{Parted, Parts, Scene};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::DVec3;
+use localshape_sim::geometry::bounds;
 use localshape_sim::{IndexLists, Weights};
 use rayon::prelude::*;
 
@@ -31,7 +32,8 @@ pub(super) fn fill(
     let homes = homes(&scaled, &lattice);
     hold(&mut pieces, &homes, &lattice);
     let inside = Inside::new(&scaled);
-    let cells = cells(&inside, &flaws, &lattice, &pieces)?;
+    let scene = Scene::new(&scaled, &lattice, &inside, &pieces);
+    let cells = cells(&scene, &flaws)?;
     let refuse = |needed: usize| {
         let mut measures = surface.measures();
         if is_graded {
@@ -43,11 +45,12 @@ pub(super) fn fill(
     if cells.len() / joined / joined > most {
         return refuse(cells.len() / joined);
     }
-    let scene = Scene { scaled: &scaled, lattice: &lattice, inside: &inside, pieces: &pieces };
     let parts = scene.parts(&cells);
     let mut nodes = Nodes::new(lattice, parts.corners.len());
+    let mut volumes = None;
     let (elements, filled, weights) = if is_graded {
-        let Graded { elements, filled, element_of } = graded::joined(&scene, &parts, &mut nodes);
+        let Graded { elements, filled, element_of, volumes: own } = graded::joined(&scene, &parts, &mut nodes);
+        volumes = Some(own.into_iter().map(|volume| volume * side * side * side).collect());
         let weights = weights(&scene, &parts, &homes, |copy| &elements[element_of[copy] as usize]);
         (elements, filled, weights)
     } else {
@@ -64,8 +67,40 @@ pub(super) fn fill(
     if elements.len() > most {
         return refuse(elements.len());
     }
-    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), ..Cage::default() };
+    let overlap = overlap(&scene, &cells) * side * side * side;
+    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), volumes, overlap, ..Cage::default() };
     Ok(Filled { cage, surface, weights, flaws })
+}
+
+/// How much more volume the shells of a closed surface have together than its inside, in cells. What is less than round-off may be is 0.
+fn overlap(scene: &Scene, cells: &[Parted]) -> f64 {
+    if !scene.inside.caps().is_empty() {
+        return 0.0;
+    }
+    let along = scene.lattice.counts[0] as u64;
+    let volume = |piece: &Piece| piece.volume + piece.shadow * (piece.cell % along) as f64;
+    let volume: f64 = scene.pieces.iter().map(volume).sum();
+    let overlap = volume - cells.iter().map(|parted| parted.full.filled).sum::<f64>();
+    if overlap > 1e-6 * volume { overlap } else { 0.0 }
+}
+
+/// How much more volume the shells of a filled surface have together than its inside (m³). Where a single one passes through itself,
+/// that is seen if it does so by more than two sides.
+pub(super) fn overlap_of(filled: &Filled, side: f64, most: usize) -> Result<f64, FillError> {
+    let (low, high) = bounds(&filled.surface.points);
+    let counts = (0.5 * (high - low) / side).ceil().max(DVec3::ONE).as_usizevec3().to_array();
+    let grid = Grid { first: low + side, side: 2.0 * side, counts };
+    if filled.flaws.pieces == 1 && !Inside::is_several(&filled.surface, &grid) {
+        return Ok(0.0);
+    }
+    let (lattice, scaled) = Lattice::about(&mut filled.surface.clone(), side, most)?;
+    let inside = Inside::new(&scaled);
+    if !inside.caps().is_empty() {
+        return Ok(0.0);
+    }
+    let pieces = clip::pieces(&scaled, &lattice);
+    let scene = Scene::new(&scaled, &lattice, &inside, &pieces);
+    Ok(overlap(&scene, &cells(&scene, &filled.flaws)?) * side * side * side)
 }
 
 /// The filled parts of elements, unless all are full.
@@ -79,32 +114,48 @@ pub(super) fn in_part(filled: Vec<f64>) -> Option<Vec<f64>> {
 /// The volume inside a cell follows from the divergence theorem for the field x: the sum over the parts of triangles in
 /// the cell, and the inside of its face towards +x, which is what the shadows of all parts farther along the row add up
 /// to. Where the surface is open, points of the cell are tried instead.
-pub(super) fn cells(
-    inside: &Inside,
-    flaws: &Flaws,
-    lattice: &Lattice,
-    pieces: &[Piece],
-) -> Result<Vec<Full>, FillError> {
+pub(super) fn cells(scene: &Scene, flaws: &Flaws) -> Result<Vec<Parted>, FillError> {
     let caps = Surface {
-        points: inside.caps().as_flattened().to_vec(),
-        triangles: (0..inside.caps().len() as u32).map(|cap| [3 * cap, 3 * cap + 1, 3 * cap + 2]).collect(),
+        points: scene.inside.caps().as_flattened().to_vec(),
+        triangles: (0..scene.inside.caps().len() as u32).map(|cap| [3 * cap, 3 * cap + 1, 3 * cap + 2]).collect(),
         ..Surface::default()
     };
-    let capped = clip::pieces(&caps, lattice);
-    let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
-    let rows = (0..lattice.counts[1] * lattice.counts[2]).into_par_iter();
-    let cells: Vec<_> = rows.flat_map_iter(|row| row_cells(inside, &grid, row, pieces, &capped)).collect();
-    if cells.iter().all(|full| full.filled <= LEAST) {
+    let capped = clip::pieces(&caps, scene.lattice);
+    check_effort(scene, flaws, &capped)?;
+    let rows = (0..scene.lattice.counts[1] * scene.lattice.counts[2]).into_par_iter();
+    let cells: Vec<_> = rows.flat_map_iter(|row| row_cells(scene, row, &capped)).collect();
+    if cells.iter().all(|parted| parted.full.filled <= LEAST) {
         return Err(no_inside(flaws));
     }
     Ok(cells)
 }
 
+/// Refuses an open surface of which too many points had to be tried.
+fn check_effort(scene: &Scene, flaws: &Flaws, capped: &[Piece]) -> Result<(), FillError> {
+    /// The most triangles that are looked at: for some minutes.
+    const MOST: f64 = 3e10;
+    let count = |pieces: &[Piece]| pieces.chunk_by(|one, other| one.cell == other.cell).count();
+    let tried = if capped.is_empty() { 0 } else { count(scene.pieces) + count(capped) };
+    if (tried * SAMPLES * SAMPLES * SAMPLES) as f64 * scene.inside.effort() <= MOST {
+        return Ok(());
+    }
+    let edges = flaws.boundary + flaws.inconsistent;
+    let message = format!("is open at {edges} edges, too many to tell how much of some {tried} cells is inside");
+    Err(FillError::new(message, "close it in the program that made it, or use a larger side"))
+}
+
+/// A part of a cell or an element: all, if it differs from that by round-off, and at least [`LEAST`].
+pub(super) fn bounded(part: f64) -> f64 {
+    if part > 1.0 - 1e-12 { 1.0 } else { part.max(LEAST) }
+}
+
 /// The cells of one row.
-fn row_cells(inside: &Inside, grid: &Grid, row: usize, pieces: &[Piece], capped: &[Piece]) -> Vec<Full> {
+fn row_cells(scene: &Scene, row: usize, capped: &[Piece]) -> Vec<Parted> {
+    let Scene { inside, lattice, pieces, .. } = *scene;
+    let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
     let along = grid.counts[0];
     let mut middles = Vec::new();
-    inside.row(grid, row, &mut middles);
+    inside.row(&grid, row, &mut middles);
     let (mut pieces, mut capped) = [pieces, capped].map(|pieces| of(pieces, row * along, along)).into();
     let (mut cells, mut shadow) = (Vec::new(), 0.0);
     for (at, &(around, is_inside)) in middles.iter().enumerate().rev() {
@@ -120,13 +171,11 @@ fn row_cells(inside: &Inside, grid: &Grid, row: usize, pieces: &[Piece], capped:
             let filled = if is_clear {
                 shadow + own.iter().map(|piece| piece.volume).sum::<f64>()
             } else {
-                sampled(inside, grid, key)
+                sampled(inside, &grid, key)
             };
-            // A part that differs from all by round-off is all.
-            let filled = if filled > 1.0 - 1e-12 { 1.0 } else { filled.max(LEAST) };
-            cells.push(Full { cell: key as u64, filled });
+            cells.push(scene.parted(key as u64, own, bounded(filled), is_clear));
         } else if is_inside {
-            cells.push(Full { cell: key as u64, filled: 1.0 });
+            cells.push(Parted::whole(key as u64));
         }
         shadow += own.iter().chain(own_caps).map(|piece| piece.shadow).sum::<f64>();
     }

@@ -1,5 +1,6 @@
 //! Where a surface cuts the edges of a lattice.
 
+use super::parts::{Parted, Scene};
 use super::{FillError, clip, cubes, lattice};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
@@ -125,9 +126,11 @@ impl Lattice {
         let most = (self.cubes - 2).as_dvec3();
         let points = self.surface.points.iter().map(|&point| (0.5 * point - 1.0).clamp(DVec3::ZERO, most)).collect();
         let scaled = Surface { points, triangles: self.surface.triangles.clone(), ..Surface::default() };
-        let cells = cubes::cells(&Inside::new(&scaled), flaws, &lattice, &clip::pieces(&scaled, &lattice))?;
+        let (inside, pieces) = (Inside::new(&scaled), clip::pieces(&scaled, &lattice));
+        let scene = if flaws.pieces == 1 { Scene::joined } else { Scene::new };
+        let cells = cubes::cells(&scene(&scaled, &lattice, &inside, &pieces), flaws)?;
         let mut filled = vec![0.0; self.cubes.as_usizevec3().element_product()];
-        for full in cells {
+        for Parted { full, .. } in cells {
             let cube = IVec3::from_array(lattice.cell(full.cell).map(|at| at as i32 + 1));
             filled[self.cube(cube)] = full.filled;
         }

@@ -587,6 +587,18 @@ mod tests {
     }
 
     #[test]
+    fn the_nearest_face_may_lie_in_a_later_ring() {
+        // A tetrahedron in the cell of the point, and a nearer one beyond the side of that cell.
+        let near = [[0.0, 0.0, 0.0], [0.3, 0.4, 0.5], [0.3, 0.6, 0.5], [0.3, 0.5, 0.6]];
+        let nearer = [[1.05, 0.4, 0.4], [1.05, 0.7, 0.4], [1.05, 0.4, 0.7], [1.5, 0.5, 0.5]];
+        let nodes = near.into_iter().chain(nearer).map(DVec3::from_array).collect();
+        let elements = [&[0, 1, 2, 3][..], &[4, 5, 6, 7]].into_iter().collect();
+        let body = body(&Cage { nodes, elements, convex: true, ..Cage::default() });
+        let found = Fan::new(&body).locate(&[DVec3::new(0.95, 0.5, 0.5)], 1.0, VERY_FAR);
+        assert_eq!(found[0].map(|place| place.element), Some(1));
+    }
+
+    #[test]
     fn a_grid_has_no_more_cells_than_boxes_need() {
         let (low, high) = (DVec3::ZERO, DVec3::splat(1e5));
         let boxes: Vec<_> = (0..1000).map(|n| DVec3::splat(100.0 * f64::from(n))).map(|low| (low, low + 1.0)).collect();

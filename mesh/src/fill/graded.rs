@@ -1,14 +1,16 @@
 //! Cubes that are coarser away from the surface.
 //!
-//! Cells whose neighbourhood is full are joined, eight to one, again and again. Cubes that share a face or an edge differ by
-//! a factor of two at most. A cube lists the nodes of smaller neighbours that hang in the middles of its faces and edges: to
-//! the shape model they are nodes like others. The surface is in the smallest cubes alone, where its weights are those of
-//! plain cubes.
+//! Eight cells without surface are joined to one cube. It lists the nodes of smaller neighbours that hang in the middles of its
+//! faces and edges: to the shape model they are nodes like others. The surface is in the smaller cubes alone, where its weights are
+//! those of plain cubes.
+//!
+//! Cubes are not joined again: their mass is in their corners, so that the moment of inertia would be too large by a part that does not
+//! fall with the size of cells. Hanging nodes carry what they would carry among cells, so that the centre of mass stays.
 
 use super::lattice::{CORNERS, Cell, Lattice, Nodes};
 use super::parts::{Parts, Scene};
 use localshape_sim::IndexLists;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// A cube of several cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +27,8 @@ pub(super) struct Graded {
     pub(super) elements: IndexLists,
     pub(super) filled: Vec<f64>,
     pub(super) element_of: Vec<u32>,
+    /// The volume inside that each node carries, in cells.
+    pub(super) volumes: Vec<f64>,
 }
 
 /// Joins cells.
@@ -39,8 +43,12 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
             is_node[set(cube, corner.map(|end| 2 * end)) as usize] = true;
         }
     }
-    let mut graded =
-        Graded { elements: IndexLists::default(), filled: vec![], element_of: vec![0; parts.copies.len()] };
+    let mut graded = Graded {
+        elements: IndexLists::default(),
+        filled: vec![],
+        element_of: vec![0; parts.copies.len()],
+        volumes: vec![],
+    };
     for cube in &cubes {
         let mut own = Vec::with_capacity(8);
         let mut push = |at: Cell| {
@@ -60,6 +68,29 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
         graded.element_of[cube.copy as usize] = graded.elements.len() as u32;
         graded.elements.push(&own);
         graded.filled.push(if cube.side > 1 { 1.0 } else { parts.copies[cube.copy as usize].filled });
+    }
+    graded.volumes = vec![0.0; nodes.places.len()];
+    for cube in &cubes {
+        let mut add = |at: Cell, volume: f64| {
+            let place = [0, 1, 2].map(|axis| cube.low[axis] + at[axis] * cube.side / 2);
+            graded.volumes[nodes.of(set(cube, at), place) as usize] += volume;
+        };
+        if cube.side == 1 {
+            let own = parts.copies[cube.copy as usize].filled / 8.0;
+            CORNERS.iter().for_each(|corner| add(corner.map(|end| 2 * end), own));
+            continue;
+        }
+        // Each cell has its volume in its corners. What is no node has it in the corners of the cube around it.
+        for at in (0..27).map(|at| [at % 3, at / 3 % 3, at / 9]) {
+            let own: f64 = at.iter().map(|&at| if at == 1 { 1.0 } else { 0.5 }).product();
+            let is_around = |end: &Cell| (0..3).all(|axis| at[axis] == 1 || 2 * end[axis] == at[axis]);
+            let ends: Vec<Cell> =
+                CORNERS.iter().filter(|end| is_around(end)).map(|end| end.map(|end| 2 * end)).collect();
+            match is_node[set(cube, at) as usize] {
+                true => add(at, own),
+                false => ends.iter().for_each(|&end| add(end, own / ends.len() as f64)),
+            }
+        }
     }
     graded
 }
@@ -83,53 +114,21 @@ fn set(lattice: &Lattice, parts: &Parts, cube: &Cube, at: Cell) -> u32 {
 /// The cubes, by their lowest cell.
 fn leaves(scene: &Scene, parts: &Parts) -> Vec<Cube> {
     let lattice = scene.lattice;
-    let single = |copy: usize| Cube { low: lattice.cell(parts.copies[copy].cell), side: 1, copy: copy as u32 };
-    let mut cubes: Vec<Cube> = (0..parts.copies.len()).map(single).collect();
-    let mut leaves: Vec<Cube> = Vec::new();
-    // All places with a part of the inside, in units of the present side, and those of whole cubes of this side.
-    let mut taken: HashSet<Cell> = cubes.iter().map(|cube| cube.low).collect();
-    let mut full: HashSet<Cell> = taken.clone();
-    let mut free: HashSet<Cell> = {
-        let mut touched = scene.pieces.iter().map(|piece| piece.cell).peekable();
-        let mut is_touched = |key: u64| {
-            while touched.next_if(|&cell| cell < key).is_some() {}
-            touched.peek() == Some(&key)
-        };
-        cubes.iter().filter(|cube| !is_touched(lattice.key(cube.low))).map(|cube| cube.low).collect()
-    };
-    let mut side = 1;
-    loop {
-        // Blocks of eight free cubes, around which no place is divided further.
-        let is_whole = |block: &Cell| {
-            (0..64).all(|at| {
-                let [x, y, z] = [at % 4, at / 4 % 4, at / 16];
-                let outside = [x, y, z].iter().filter(|&&at| at == 0 || at == 3).count();
-                // Cubes that meet at a corner only may differ by more.
-                let place = [0, 1, 2].map(|axis| (2 * block[axis] + [x, y, z][axis]).checked_sub(1));
-                let [Some(x), Some(y), Some(z)] = place else { return outside > 0 };
-                match outside {
-                    0 => free.contains(&[x, y, z]),
-                    3 => true,
-                    _ => full.contains(&[x, y, z]) || !taken.contains(&[x, y, z]),
-                }
-            })
-        };
-        let corners = cubes.iter().filter(|cube| cube.low.iter().all(|at| at / side % 2 == 0));
-        let whole: Vec<Cube> = corners
-            .filter(|cube| free.contains(&cube.low.map(|at| at / side)) && is_whole(&cube.low.map(|at| at / side / 2)))
-            .map(|cube| Cube { side: 2 * side, ..*cube })
-            .collect();
-        let joined: HashSet<Cell> = whole.iter().map(|cube| cube.low.map(|at| at / side / 2)).collect();
-        leaves.extend(cubes.iter().filter(|cube| !joined.contains(&cube.low.map(|at| at / side / 2))));
-        if whole.is_empty() {
-            break;
+    let block = |cell: Cell| lattice.key(cell.map(|at| at / 2));
+    let mut touched = scene.pieces.iter().map(|piece| piece.cell).peekable();
+    let mut free: HashMap<u64, u32> = HashMap::new();
+    for full in &parts.copies {
+        while touched.next_if(|&cell| cell < full.cell).is_some() {}
+        if touched.peek() != Some(&full.cell) {
+            *free.entry(block(lattice.cell(full.cell))).or_default() += 1;
         }
-        taken = taken.iter().map(|place| place.map(|at| at / 2)).collect();
-        full.clone_from(&joined);
-        free = joined;
-        cubes = whole;
-        side *= 2;
     }
-    leaves.sort_unstable_by_key(|cube| (lattice.key(cube.low), cube.copy));
-    leaves
+    let cubes = parts.copies.iter().zip(0..).filter_map(|(full, copy)| {
+        let low = lattice.cell(full.cell);
+        if free.get(&block(low)) != Some(&8) {
+            return Some(Cube { low, side: 1, copy });
+        }
+        low.iter().all(|at| at % 2 == 0).then_some(Cube { low, side: 2, copy })
+    });
+    cubes.collect()
 }

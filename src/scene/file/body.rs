@@ -194,7 +194,7 @@ pub(in crate::scene) enum FillKind {
     /// Cubes that contain a part of the inside. Their stiffness and mass are in proportion to that part.
     #[default]
     Cubes,
-    /// Cubes at the surface, with sides two, four, … times as long inside.
+    /// Cubes at the surface, and those of twice the side inside.
     Graded,
     /// Tetrahedra whose faces follow the surface.
     Tetrahedra,

@@ -1,6 +1,6 @@
 //! What a mesh file contains in words and numbers, as `check` prints them.
 
-use super::{CELLS, MeshFile, crossing, left, longest, mended, parts};
+use super::{CELLS, MeshFile, crossing, doubts, left, longest, mended, parts};
 use crate::reading::beside::Wrong;
 use crate::reading::captions;
 use crate::reading::words::{count, list, quoted, short};
@@ -66,7 +66,7 @@ struct GroupSummary {
 struct SurfaceSummary {
     triangles: usize,
     area: f64,
-    /// The volume inside, if the surface is closed.
+    /// The volume inside, if the surface is closed. What lies in several shells counts once.
     volume: Option<f64>,
     closed: bool,
     #[serde(flatten, with = "FlawNames")]
@@ -74,6 +74,9 @@ struct SurfaceSummary {
     /// The value of `weld` that would close at least half of the open edges.
     weld: Option<f64>,
     groups: Vec<GroupSummary>,
+    /// What is wrong and left, or shows in the elements of the first fill that is possible, with a remedy each.
+    #[serde(rename = "flaws")]
+    left: Vec<String>,
     /// What each fill would give.
     fills: Vec<FillSummary>,
 }
@@ -156,7 +159,8 @@ impl MeshSummary {
     fn of_surface(surface: &Surface, limits: &Limits) -> Self {
         let (surface, flaws) = surface.mended();
         let Measures { volume, area, closed, low, high, .. } = surface.measures();
-        let side = longest(&surface.points) / f64::from(CELLS);
+        let longest = longest(&surface.points);
+        let side = longest / f64::from(CELLS);
         let most = usize::try_from(limits.nodes).unwrap_or(usize::MAX).min(u32::MAX as usize);
         let fills = [
             ("cubes", Fill::Cubes { side }),
@@ -164,8 +168,11 @@ impl MeshSummary {
             ("tetrahedra", Fill::Tetrahedra { side }),
             ("polyhedra", Fill::Polyhedra { side }),
         ];
+        let (mut overlap, mut of_cage) = (0.0, None);
         let fills = fills.map(|(with, chosen)| match fill(&surface, chosen, most) {
             Ok(filled) => {
+                overlap = filled.cage.overlap.max(overlap);
+                of_cage.get_or_insert_with(|| doubts(&filled.cage, volume, side, longest, false));
                 let (elements, nodes) = (filled.cage.elements.len(), filled.cage.nodes.len());
                 FillSummary { with, side, elements, nodes, parts: parts(nodes, &filled.cage.elements), error: None }
             }
@@ -174,14 +181,16 @@ impl MeshSummary {
                 FillSummary { with, side, elements: 0, nodes: 0, parts: 0, error: Some(error) }
             }
         });
+        let told = left(&flaws, closed).into_iter().chain(of_cage.into_iter().flatten());
         let content = Content::Surface(SurfaceSummary {
             triangles: surface.triangles.len(),
             area,
-            volume: closed.then_some(volume),
+            volume: closed.then_some(volume - overlap),
             closed,
             flaws,
             weld: surface.closing_weld(),
             groups: surface.groups.iter().map(GroupSummary::new).collect(),
+            left: told.map(|(message, help)| format!("{message}; {help}")).collect(),
             fills: fills.into(),
         });
         Self { points: surface.points.len(), extent: (high - low).to_array(), notes: Vec::new(), content }
@@ -243,11 +252,11 @@ impl fmt::Display for MeshSummary {
                 };
                 let pieces = several(surface.flaws.pieces, "separate piece");
                 line("form", &format!("{measure}, area {}, {pieces}", short(surface.area)))?;
-                let (mended, left) = (mended(&surface.flaws), left(&surface.flaws));
-                for (name, flaws) in [("mended", mended), ("flaws", left)].iter().filter(|(_, flaws)| !flaws.is_empty())
-                {
-                    line(name, &list(flaws, "and", str::to_owned))?;
+                let mended = mended(&surface.flaws);
+                if !mended.is_empty() {
+                    line("mended", &list(&mended, "and", str::to_owned))?;
                 }
+                surface.left.iter().try_for_each(|flaw| line("flaw", flaw))?;
                 for fill in &surface.fills {
                     let size = match &fill.error {
                         Some(error) => format!("none: the surface {error}"),

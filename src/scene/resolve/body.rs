@@ -183,7 +183,7 @@ fn generated(
     let Made { nodes: rest, elements } = generator.make(along?);
     let count = rest.len();
     let mut body = Body::new(dimension, rest, vec![1.0; count], elements, solids(file), None);
-    let mass = mass::resolve(file, &body, place, report);
+    let mass = mass::resolve(file, &body, None, place, report);
     let initial = start(file, place, body.rest.clone(), None, dimension, report);
     if report.total() > before {
         return None;
@@ -200,7 +200,7 @@ fn generated(
 /// A surface with the elements that fill it, whose edges have a length (m).
 fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Collector<'_>) -> Option<ResolvedBody> {
     let before = report.total();
-    let Filled { cage: Cage { nodes, elements, filled, convex, groups }, surface, weights, .. } = of;
+    let Filled { cage: Cage { nodes, elements, filled, convex, groups, volumes, overlap }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let measures = surface.measures();
     let count = nodes.len();
@@ -210,7 +210,7 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
     let is_alike = file.fill.as_ref().is_none_or(|fill| fill.with == FillKind::Cubes);
     body.stiffness = (!is_alike).then(|| relative_stiffness(&body, side));
     body.carried = Some(Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights }));
-    let mass = mass::resolve(file, &body, place, report);
+    let mass = mass::resolve(file, &body, volumes, place, report);
     let initial = start(file, place, body.rest.clone(), None, Dimension::Space, report);
     if report.total() > before {
         return None;
@@ -219,9 +219,9 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
     if let Some(density) = file.density
         && measures.closed
     {
-        // Tetrahedra and polyhedra fill it a little more or less, but its mass is that of its own volume.
+        // Tetrahedra and polyhedra fill it a little more or less, but its mass is that of its own volume, where shells count once.
         let found: f64 = body.mass.iter().sum();
-        body.mass.iter_mut().for_each(|mass| *mass *= density * measures.volume / found);
+        body.mass.iter_mut().for_each(|mass| *mass *= density * (measures.volume - overlap) / found);
     }
     let name = file.name.clone().unwrap_or_default();
     let body = Arc::new(body);
@@ -308,7 +308,7 @@ fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_
     let mass = masses.unwrap_or_else(|| vec![1.0; count]);
     let mut body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
     if !is_listed {
-        body.mass = mass::resolve(file, &body, &place, report)?;
+        body.mass = mass::resolve(file, &body, None, &place, report)?;
     }
     let body = Arc::new(body);
     let side = elements::mean_edge(&body);

@@ -6,12 +6,20 @@ use crate::scene::file::{BodyFile, LARGEST};
 use crate::sim::geometry::volumes_at_rest;
 use crate::sim::{Body, Dimension};
 
-/// The mass of each node of a body without masses of its nodes (kg), or `None` after reporting a mistake.
-pub(super) fn resolve(file: &BodyFile, body: &Body, place: &Place, report: &mut Collector<'_>) -> Option<Vec<f64>> {
+/// The mass of each node of a body without masses of its nodes (kg), or `None` after reporting a mistake. Nodes may have parts of the
+/// body's volume of their own.
+pub(super) fn resolve(
+    file: &BodyFile,
+    body: &Body,
+    volumes: Option<Vec<f64>>,
+    place: &Place,
+    report: &mut Collector<'_>,
+) -> Option<Vec<f64>> {
     let nodes = body.len();
+    let volumes = || volumes.unwrap_or_else(|| shares(body));
     let (key, masses) = match (file.density, file.mass_total) {
         (Some(density), _) => {
-            let volumes = shares(body);
+            let volumes = volumes();
             if let Some(node) = volumes.iter().position(|&volume| volume <= 0.0) {
                 let (measure, per) = match body.dimension {
                     Dimension::Plane => ("an area", "area"),
@@ -29,7 +37,7 @@ pub(super) fn resolve(file: &BodyFile, body: &Body, place: &Place, report: &mut 
             ("density", volumes.into_iter().map(|volume| density * volume).collect())
         }
         (None, Some(total)) => {
-            let volumes = shares(body);
+            let volumes = volumes();
             let all: f64 = volumes.iter().sum();
             let has_volumes = volumes.iter().all(|&volume| volume > 0.0);
             let equal = total / nodes as f64;

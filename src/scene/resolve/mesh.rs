@@ -168,16 +168,10 @@ fn filled(
         let message = format!("`{name}` is mended: {}", list(&mended, "and", str::to_owned));
         report.warn(&path, message, None);
     }
-    let left = mesh::left(&filled.flaws);
-    // Pieces that touch in an edge are closed all the same.
-    if !left.is_empty() && !filled.surface.measures().closed {
-        let message = format!(
-            "`{name}` has {}, and is filled where its triangles enclose most",
-            list(&left, "and", str::to_owned)
-        );
-        let help = "close it in the program that made it, unless the elements are right; \
-                    `localshape check FILE` tells whether `weld` helps";
-        report.warn(&path, message, help);
+    let measures = filled.surface.measures();
+    let doubts = mesh::doubts(&filled.cage, measures.volume, side, longest, typed.side.is_some());
+    for (message, help) in mesh::left(&filled.flaws, measures.closed).into_iter().chain(doubts) {
+        report.warn(&path, format!("`{name}` {message}"), help);
     }
     let Cage { nodes, elements, .. } = &filled.cage;
     let help = || "join them in the program that made it".to_owned();

@@ -1,0 +1,164 @@
+//! What of the surface in a cell bounds the inside, where shells cross or lie in each other.
+//!
+//! Inside, the winding number is above 0. A shell in another one has it on both of its sides and bounds nothing. Where shells cross,
+//! their triangles are divided, so that each fragment has one winding number on either side.
+
+use super::sight::Facet;
+use crate::inside::Inside;
+use glam::DVec3;
+use localshape_sim::geometry::bounds;
+
+/// The distance from a facet to the points on its sides that are asked whether they are inside, in sides of the cell.
+const BESIDE: f64 = 1e-7;
+/// A facet is divided into no more fragments by further facets: hundreds that cross in one cell are no shells.
+const MOST: usize = 256;
+
+/// A part of a facet that no other facet passes.
+pub(super) struct Fragment {
+    pub(super) facet: usize,
+    pub(super) corners: Vec<DVec3>,
+    /// How much of it bounds the inside: 0 or 1, or an equal share of one among facets at the same place.
+    pub(super) bounding: f64,
+}
+
+/// The facets of shells that cross or lie in each other.
+pub(super) struct Tangle {
+    pub(super) fragments: Vec<Fragment>,
+    /// Pairs of facets that cross, or are at the same place.
+    pub(super) joined: Vec<[usize; 2]>,
+}
+
+impl Tangle {
+    /// The tangle of facets, or `None` if all of them bound the inside. Facets of one patch are compared only if `folded` says that more
+    /// than two may meet in an edge.
+    pub(super) fn new(inside: &Inside, facets: &[Facet], patch_of: &[u32], folded: bool) -> Option<Self> {
+        let boxes: Vec<_> = facets.iter().map(|facet| bounds(facet.piece.corners())).collect();
+        let near = near(facets, &boxes, patch_of, folded);
+        // Patches away from others are on one side of them all, as their largest facets are.
+        let mut largest = vec![None::<usize>; patch_of.len()];
+        for (at, &patch) in patch_of.iter().enumerate() {
+            let best = &mut largest[patch as usize];
+            *best = best.filter(|&best| facets[best].area >= facets[at].area).or(Some(at));
+        }
+        let mut known: Vec<Option<f64>> =
+            largest.iter().map(|at| at.map(|at| facets[at].bounding(inside, facets[at].middle))).collect();
+        for (_, &patch) in near.iter().zip(patch_of).filter(|(near, _)| folded || !near.is_empty()) {
+            known[patch as usize] = None;
+        }
+        let mut tangle = Self { fragments: Vec::new(), joined: Vec::new() };
+        for (at, facet) in facets.iter().enumerate() {
+            let mut parts = vec![facet.piece.corners().to_vec()];
+            for &other in &near[at] {
+                if parts.len() < MOST {
+                    parts = parts.into_iter().flat_map(|part| facets[other].divide(part, boxes[other])).collect();
+                }
+            }
+            let first = tangle.fragments.len();
+            tangle.fragments.extend(parts.into_iter().filter(|corners| corners.len() > 2).map(|corners| {
+                let middle = || corners.iter().sum::<DVec3>() / corners.len() as f64;
+                let bounding = known[patch_of[at] as usize].unwrap_or_else(|| facet.bounding(inside, middle()));
+                Fragment { facet: at, corners, bounding }
+            }));
+            let is_shared = tangle.fragments[first..].iter().any(|fragment| fragment.bounding.fract() != 0.0);
+            let joined = near[at].iter().filter(|&&other| is_shared || facet.crosses(&facets[other]));
+            tangle.joined.extend(joined.map(|&other| [at, other]));
+        }
+        tangle.fragments.iter().any(|fragment| fragment.bounding != 1.0).then_some(tangle)
+    }
+}
+
+/// For each facet, those of other patches that it may meet; of its own, too, if surfaces are folded.
+fn near(facets: &[Facet], boxes: &[(DVec3, DVec3)], patch_of: &[u32], folded: bool) -> Vec<Vec<usize>> {
+    let mut of_patches = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); facets.len()];
+    for (&patch, own) in patch_of.iter().zip(boxes) {
+        let all = &mut of_patches[patch as usize];
+        *all = (all.0.min(own.0), all.1.max(own.1));
+    }
+    let near = |at: usize| {
+        let is_other = |patch: u32| folded || patch != patch_of[at];
+        let is_alone = !(0..).zip(&of_patches).any(|(patch, of)| is_other(patch) && overlap(boxes[at], *of));
+        if is_alone || facets[at].area == 0.0 {
+            return Vec::new();
+        }
+        let meets = |&other: &usize| {
+            let is_met = other != at && is_other(patch_of[other]) && facets[other].area > 0.0;
+            is_met && overlap(boxes[at], boxes[other]) && facets[at].meets(&facets[other])
+        };
+        (0..facets.len()).filter(meets).collect()
+    };
+    (0..facets.len()).map(near).collect()
+}
+
+/// Whether boxes meet.
+fn overlap(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
+    (one.0 - BESIDE).cmple(other.1).all() && (other.0 - BESIDE).cmple(one.1).all()
+}
+
+impl Facet {
+    /// How far a point is in front of the facet's plane.
+    fn height(&self, point: DVec3) -> f64 {
+        self.normal.dot(point - self.corners[0]) / self.normal.length()
+    }
+
+    /// The least and the greatest height of points.
+    fn heights(&self, points: &[DVec3]) -> [f64; 2] {
+        let heights = || points.iter().map(|&point| self.height(point));
+        [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Whether each of two facets meets the plane of the other.
+    fn meets(&self, other: &Self) -> bool {
+        [(self, other), (other, self)].into_iter().all(|(one, other)| {
+            let [low, high] = one.heights(other.piece.corners());
+            low <= BESIDE && high >= -BESIDE
+        })
+    }
+
+    /// Whether two facets cross: a side of one passes the other.
+    fn crosses(&self, other: &Self) -> bool {
+        [(self, other), (other, self)].into_iter().any(|(one, other)| {
+            let all = one.piece.corners();
+            (0..all.len()).any(|at| {
+                let along = all[(at + 1) % all.len()] - all[at];
+                other.hit(all[at], along).is_some_and(|hit| (0.0..=1.0).contains(&hit))
+            })
+        })
+    }
+
+    /// The two parts of a polygon in front of the facet's plane and behind it, or all of it if it does not reach this facet in its box.
+    fn divide(&self, polygon: Vec<DVec3>, own: (DVec3, DVec3)) -> Vec<Vec<DVec3>> {
+        let [low, high] = self.heights(&polygon);
+        if low > -BESIDE || high < BESIDE || !overlap(bounds(&polygon), own) {
+            return vec![polygon];
+        }
+        let mut sides = vec![Vec::new(), Vec::new()];
+        for (at, &from) in polygon.iter().enumerate() {
+            let to = polygon[(at + 1) % polygon.len()];
+            let [below, above] = [from, to].map(|point| self.height(point));
+            sides[usize::from(below < 0.0)].push(from);
+            if below * above < 0.0 {
+                let cut = from + (to - from) * (below / (below - above));
+                sides.iter_mut().for_each(|side| side.push(cut));
+            } else if below == 0.0 {
+                sides[1].push(from);
+            }
+        }
+        sides
+    }
+
+    /// Whether the facet bounds the inside in its middle.
+    pub(super) fn bounds(&self, inside: &Inside) -> bool {
+        self.area == 0.0 || self.bounding(inside, self.middle) != 0.0
+    }
+
+    /// How much of the facet bounds the inside at a point of it.
+    fn bounding(&self, inside: &Inside, at: DVec3) -> f64 {
+        let out = self.normal * (BESIDE / self.normal.length());
+        let [front, behind] = [at + out, at - out].map(|point| inside.around(point));
+        match behind - front {
+            // A wall between two parts bounds both.
+            0 => 1.0,
+            several => f64::from(i32::from(behind > 0) - i32::from(front > 0)) / f64::from(several),
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Fillings of surfaces of several shells: apart, crossing, and in each other.
+
+mod common;
+
+use common::{ball, block, ring, together};
+use glam::{DQuat, DVec3};
+use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
+use localshape_sim::geometry::bounds;
+
+const MOST: usize = 1_000_000;
+
+/// A surface of a file.
+fn file(name: &str) -> Surface {
+    let bytes = std::fs::read(format!("{}/tests/files/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let format = Format::of(name.rsplit('.').next().unwrap()).unwrap();
+    match read(&bytes, format, &Limits { points: 10_000, corners: 100_000 }).unwrap() {
+        Mesh::Surface(surface) => surface,
+        Mesh::Volume(_) => panic!("{name} has cells"),
+    }
+}
+
+fn turned(surface: Surface) -> Surface {
+    Surface { triangles: surface.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..surface }
+}
+
+/// A surface turned about a slanted axis, so that none of its triangles is in a plane of the lattice.
+fn slanted(surface: &Surface) -> Surface {
+    let turn = DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize();
+    Surface { points: surface.points.iter().map(|&point| turn * point).collect(), ..surface.clone() }
+}
+
+/// What is filled of each body whose elements share nodes (m³), in rising order.
+fn volumes(filled: &Filled) -> Vec<f64> {
+    let cage = &filled.cage;
+    // The lowest node that each node hangs together with.
+    let mut body_of: Vec<usize> = (0..cage.nodes.len()).collect();
+    let mut changed = true;
+    while changed {
+        changed = false;
+        for element in cage.elements.iter() {
+            let least = element.iter().map(|&node| body_of[node as usize]).min().unwrap();
+            for &node in element {
+                changed |= std::mem::replace(&mut body_of[node as usize], least) != least;
+            }
+        }
+    }
+    let mut volumes = vec![0.0; cage.nodes.len()];
+    for (element, nodes) in cage.elements.iter().enumerate() {
+        let places: Vec<_> = nodes.iter().map(|&node| cage.nodes[node as usize]).collect();
+        let (low, high) = bounds(&places);
+        let part = cage.filled.as_ref().map_or(1.0, |filled| filled[element]);
+        volumes[body_of[nodes[0] as usize]] += part * (high - low).element_product();
+    }
+    volumes.retain(|&volume| volume > 0.0);
+    volumes.sort_by(f64::total_cmp);
+    volumes
+}
+
+/// Checks the volume of each body that cubes and graded cubes make, and that of what lies in several shells.
+fn assert_volumes(surface: &Surface, sides: &[f64], expected: &[f64], overlap: f64) {
+    for &side in sides {
+        for with in [Fill::Cubes { side }, Fill::Graded { side }] {
+            let filled = fill(surface, with, MOST).unwrap();
+            let found = volumes(&filled);
+            // Points near to planes of the lattice are moved to them.
+            let is_right = |(one, other): (&f64, &f64)| (one - other).abs() < 2e-5 * side;
+            assert!(
+                found.len() == expected.len() && found.iter().zip(expected).all(is_right),
+                "{found:?} in place of {expected:?}, {with:?}"
+            );
+            assert!((filled.cage.overlap - overlap).abs() < 2e-5 * side, "{}", filled.cage.overlap);
+        }
+    }
+}
+
+#[test]
+fn each_piece_has_its_own_volume() {
+    let boxes = file("boxes-apart.obj");
+    assert_volumes(&boxes, &[0.2, 0.1, 0.07], &[0.168, 0.18], 0.0);
+    assert_volumes(&slanted(&boxes), &[0.2, 0.1, 0.07], &[0.168, 0.18], 0.0);
+    // Three plates in one layer of cells, and a gap that no cell resolves.
+    let plate = |low: f64, high: f64| block(DVec3::new(0.0, low, 0.0), DVec3::new(1.0, high, 0.6));
+    let plates = together(&[plate(0.0, 0.02), plate(0.03, 0.06), plate(0.06001, 0.1)]);
+    let expected = [0.012, 0.018, 0.6 * (0.1 - 0.06001)];
+    assert_volumes(&plates, &[0.2, 0.1], &expected, 0.0);
+    assert_volumes(&slanted(&plates), &[0.15, 0.08], &expected, 0.0);
+    // Rings through each other, which do not touch.
+    let lying = ring(1.0, 0.2, 60);
+    let along =
+        Surface { points: lying.points.iter().map(|at| DVec3::new(at.x + 0.7, at.z, at.y)).collect(), ..lying.clone() };
+    let own = lying.mended().0.measures().volume;
+    assert_volumes(&together(&[lying, along]), &[0.3, 0.11], &[own, own], 0.0);
+}
+
+#[test]
+fn shells_that_cross_are_filled_once() {
+    let cube = block(DVec3::ZERO, DVec3::ONE);
+    let moved = |by: DVec3| Surface { points: cube.points.iter().map(|&point| point + by).collect(), ..cube.clone() };
+    let crossing = file("boxes-crossing.obj");
+    let sides = [0.2, 0.13, 0.5, 3.0];
+    assert_volumes(&crossing, &sides, &[1.625], 0.375);
+    assert_volumes(&slanted(&crossing), &sides, &[1.625], 0.375);
+    // Faces that lie on each other, to the same side.
+    let long = together(&[cube.clone(), moved(DVec3::new(0.437, 0.0, 0.0))]);
+    assert_volumes(&long, &sides, &[1.437], 0.563);
+    assert_volumes(&slanted(&long), &sides, &[1.437], 0.563);
+    // Two squares at 45° make a star of eight points.
+    let eighth = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_4);
+    let middle = DVec3::splat(0.5);
+    let star = Surface {
+        points: cube.points.iter().map(|&point| eighth * (point - middle) + middle).collect(),
+        ..cube.clone()
+    };
+    let star = together(&[cube.clone(), star]);
+    let overlap = 2.0 * (std::f64::consts::SQRT_2 - 1.0);
+    assert_volumes(&star, &sides, &[2.0 - overlap], overlap);
+    assert_volumes(&slanted(&star), &sides, &[2.0 - overlap], overlap);
+    // Three at once: by inclusion and exclusion.
+    let [x, y] = [DVec3::new(0.3, 0.2, 0.1), DVec3::new(-0.2, 0.4, 0.3)];
+    let three = together(&[cube.clone(), moved(x), moved(y)]);
+    let common = |by: &[DVec3]| {
+        let low = by.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let high = by.iter().copied().fold(DVec3::INFINITY, DVec3::min) + 1.0;
+        (high - low).max(DVec3::ZERO).element_product()
+    };
+    let zero = DVec3::ZERO;
+    let overlap = common(&[zero, x]) + common(&[zero, y]) + common(&[x, y]) - common(&[zero, x, y]);
+    assert_volumes(&three, &sides, &[3.0 - overlap], overlap);
+    assert_volumes(&slanted(&three), &sides, &[3.0 - overlap], overlap);
+}
+
+#[test]
+fn shells_in_each_other_are_filled_once_and_cavities_are_not() {
+    let sides = [0.2, 0.5, 0.37, 3.0];
+    let outer = block(DVec3::ZERO, DVec3::splat(3.0));
+    for (low, high) in [(1.0, 2.0), (0.05, 2.95), (0.6, 1.1)] {
+        let inner = block(DVec3::splat(low), DVec3::splat(high));
+        let size = (high - low) * (high - low) * (high - low);
+        let nested = together(&[outer.clone(), inner.clone()]);
+        assert_volumes(&nested, &sides, &[27.0], size);
+        assert_volumes(&slanted(&nested), &sides, &[27.0], size);
+        let hollow = together(&[outer.clone(), turned(inner)]);
+        assert_volumes(&hollow, &sides, &[27.0 - size], 0.0);
+        assert_volumes(&slanted(&hollow), &sides, &[27.0 - size], 0.0);
+    }
+    // Round shells, one through the other's side.
+    let [one, other] = [0.0, 0.9].map(|x| ball(DVec3::new(x, 0.0, 0.0), 1.0, 40));
+    let alone = fill(&one, Fill::Cubes { side: 0.1 }, MOST).unwrap();
+    let both = fill(&together(&[one, other]), Fill::Cubes { side: 0.1 }, MOST).unwrap();
+    let [alone, all] = [2.0 * volumes(&alone)[0], volumes(&both)[0] + both.cage.overlap];
+    assert!((all / alone - 1.0).abs() < 1e-7, "{all} {alone}");
+    // The lens that two balls at a distance d share: π (4 + d) (2 − d)² / 12, of 40 corners around a little less.
+    let lens = std::f64::consts::PI * 4.9 * 1.1 * 1.1 / 12.0;
+    assert!((both.cage.overlap / lens - 1.0).abs() < 0.03, "{} {lens}", both.cage.overlap);
+}
+
+/// A hundred random triangles are no solid, but soon answered.
+#[test]
+fn a_random_soup_is_filled_or_refused() {
+    let (soup, side) = (file("soup.stl"), 0.05);
+    for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
+        let start = std::time::Instant::now();
+        match fill(&soup, with, MOST) {
+            Ok(filled) => assert_eq!((filled.flaws.boundary, filled.cage.elements.is_empty()), (300, false)),
+            Err(error) => assert!(error.help.is_some(), "{error}"),
+        }
+        println!("{with:?} in {:?}", start.elapsed());
+    }
+}
