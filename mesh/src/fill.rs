@@ -1,5 +1,6 @@
 //! Surfaces filled with elements.
 
+mod apart;
 mod clip;
 mod cubes;
 mod cuts;
@@ -11,6 +12,7 @@ mod parts;
 mod polyhedra;
 mod sight;
 mod tetrahedra;
+mod tighten;
 mod union;
 
 use super::{Flaws, Group, Surface};
@@ -52,7 +54,7 @@ pub struct Cage {
     pub nodes: Vec<DVec3>,
     /// The nodes of each element.
     pub elements: IndexLists,
-    /// The part of each element's volume that is inside the surface, above 0 and at most 1; `None` if all are full.
+    /// The part of each element's volume that is inside the surface, above 0 and at most 1; `None` if all are known to be full.
     pub filled: Option<Vec<f64>>,
     /// Whether elements are the convex hulls of their nodes, in any order.
     pub convex: bool,
@@ -118,16 +120,13 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
     lattice::check(&surface, fill, side, most)?;
     surface.refine(side, most);
-    let mut filled = match fill {
+    let filled = match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
         Fill::Graded { side } => cubes::fill(surface, flaws, side, true, most),
-        Fill::Polyhedra { side } => polyhedra::fill(surface, flaws, side, most),
-        Fill::Tetrahedra { side } => tetrahedra::fill(surface, flaws, side, most),
-    }?;
-    if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
-        filled.cage.overlap = cubes::overlap_of(&filled, side, most)?;
-    }
-    Ok(filled.with_groups())
+        Fill::Polyhedra { side } => apart::fill(surface, side, most, |part| polyhedra::fill(part, flaws, side, most)),
+        Fill::Tetrahedra { side } => apart::fill(surface, side, most, |part| tetrahedra::fill(part, flaws, side, most)),
+    };
+    filled.map(Filled::with_groups)
 }
 
 impl Filled {

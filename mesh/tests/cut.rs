@@ -2,11 +2,13 @@
 
 mod common;
 
-use common::{ball, block, ring, scan};
+use common::near::outside;
+use common::{ball, block, ring, scan, together};
 use glam::{DMat3, DQuat, DVec3};
-use localshape_mesh::{Fill, Filled, Surface, fill};
+use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::{around, bounds, volumes_at_rest};
 use localshape_sim::{Body, Dimension, Solids};
+use std::collections::BTreeMap;
 use std::collections::HashMap;
 
 /// More elements than any test needs.
@@ -184,7 +186,7 @@ fn assert_gentle(filled: &Filled, most: f64) {
     assert!(found < most, "{found}");
 }
 
-/// Thin parts are as wide as cells, so that all of a scan hangs together at any side.
+/// Thin parts have elements as well, so that all of a scan hangs together at any side.
 #[test]
 fn dihedral_angles_of_tetrahedra_are_bounded() {
     let shapes = round().into_iter().chain([block(DVec3::ZERO, DVec3::new(1.0, 0.63, 0.77))]);
@@ -213,6 +215,107 @@ fn scans_are_filled_with_polyhedra_of_limited_stiffness() {
             assert!(stiff < 21.34, "{name}, {cells} cells: {stiff}");
             assert_filled(&filled, &body, slack);
             assert_gentle(&filled, 6.0);
+        }
+    }
+}
+
+/// The shipped hare, with the largest side 1.
+fn hare() -> Surface {
+    let bytes = std::fs::read("../scenes/hare.ply").unwrap();
+    let Ok(Mesh::Surface(mut hare)) = read(&bytes, Format::Ply, &Limits { points: 100_000, corners: 1_000_000 }) else {
+        panic!("hare.ply is a surface")
+    };
+    let (low, high) = bounds(&hare.points);
+    hare.points.iter_mut().for_each(|point| *point /= (high - low).max_element());
+    hare
+}
+
+/// A bar that stands on the ground.
+fn bar(wide: f64) -> Surface {
+    block(DVec3::new(-0.5 * wide, 0.0, -0.5 * wide), DVec3::new(0.5 * wide, 1.0, 0.5 * wide))
+}
+
+#[test]
+fn elements_stay_at_the_surface() {
+    let sheet = block(DVec3::ZERO, DVec3::new(1.0, 0.03, 0.7));
+    let notched = together(&[bar(0.5), block(DVec3::new(0.25, 0.0, -0.25), DVec3::new(0.5, 0.5, 0.25))]);
+    let shapes =
+        round().into_iter().chain([0.25, 0.26, 0.55].map(bar)).chain([hare(), sheet, notched, ring(0.5, 0.03, 60)]);
+    // As fans, the faces of `mpi.off` lie over each other and enclose nothing there.
+    let scans = scans().filter(|&(name, _)| name != "mpi.off");
+    for (name, surface) in scans.chain(shapes.map(|shape| ("shape", shape))) {
+        let cells: &[f64] = if name == "shape" { &[9.0, 10.0, 15.0, 20.0] } else { &[12.0] };
+        for &cells in cells {
+            let side = 1.0 / cells;
+            for with in both(side) {
+                let (filled, body) = filled(&surface, with);
+                let found = outside(&filled, &body, side);
+                assert_eq!((found.far, found.empty), (0, 0), "{name}, {with:?}: {found:?}");
+            }
+        }
+    }
+}
+
+/// Polyhedra have nodes at sharp edges and corners, on the lattice or beside it.
+#[test]
+fn polyhedra_fill_blocks_exactly() {
+    for size in [DVec3::new(0.26, 1.0, 0.26), DVec3::new(0.55, 1.0, 0.25), DVec3::new(1.0, 0.63, 0.77)] {
+        for cells in [9.0, 10.0, 15.0, 20.0] {
+            let (filled, body) = filled(&block(-0.5 * size, 0.5 * size), Fill::Polyhedra { side: 1.0 / cells });
+            let ratio = volumes_at_rest(&body).iter().sum::<f64>() / size.element_product();
+            // A corner nearer than a thirty-second of a side to one of the lattice is moved to it.
+            assert!((ratio - 1.0).abs() < 0.012, "{size}, {cells} cells: {ratio}");
+            assert!(filled.weights.len() == filled.surface.points.len());
+        }
+    }
+}
+
+/// The volume of each part of a cage that hangs together.
+fn volumes_of_parts(body: &Body) -> Vec<f64> {
+    let mut part: Vec<usize> = (0..body.rest.len()).collect();
+    for _ in 0..body.rest.len() {
+        let before = part.clone();
+        for element in body.elements.iter() {
+            let least = element.iter().map(|&node| part[node as usize]).min().unwrap();
+            element.iter().for_each(|&node| part[node as usize] = least);
+        }
+        if part == before {
+            break;
+        }
+    }
+    let mut sums = BTreeMap::new();
+    for (element, volume) in body.elements.iter().zip(volumes_at_rest(body)) {
+        *sums.entry(part[element[0] as usize]).or_insert(0.0) += volume;
+    }
+    sums.into_values().collect()
+}
+
+/// Also if they are nearer to each other than elements are long. Tetrahedra of few cells cut off the edges of blocks.
+#[test]
+fn parts_that_do_not_touch_stay_apart() {
+    for gap in [0.3, 0.05, 1e-4] {
+        let first = block(DVec3::ZERO, DVec3::new(0.6, 0.7, 0.4));
+        let second = block(DVec3::new(0.6 + gap, 0.0, 0.0), DVec3::new(1.2 + gap, 0.75, 0.4));
+        let surface = together(&[first, second]);
+        for cells in [5.0, 10.0, 20.0] {
+            let side = (1.2 + gap) / cells;
+            for (with, slack) in [(Fill::Polyhedra { side }, 0.012), (Fill::Tetrahedra { side }, 0.5)] {
+                let (filled, body) = filled(&surface, with);
+                let parts = volumes_of_parts(&body);
+                assert_eq!(parts.len(), 2, "{gap} {with:?}");
+                for (volume, right) in parts.into_iter().zip([0.168, 0.18]) {
+                    assert!((volume / right - 1.0).abs() < slack, "{gap} {with:?}: {volume} {right}");
+                }
+                // What the nodes of each part weigh is exact, with any elements.
+                let volumes = filled.cage.volumes.expect("those of two parts");
+                let (middle, mut exact) = (0.6 + 0.5 * gap, [0.0; 2]);
+                for (node, volume) in body.rest.iter().zip(volumes) {
+                    exact[usize::from(node.x > middle)] += volume;
+                }
+                for (volume, right) in exact.into_iter().zip([0.168, 0.18]) {
+                    assert!((volume / right - 1.0).abs() < 1e-12, "{gap} {with:?}: {volume} {right}");
+                }
+            }
         }
     }
 }

@@ -2,8 +2,12 @@
 //! and `assimp-testmodels`, and those in folders named by `LOCALSHAPE_MESHES`. With `LOCALSHAPE_REQUIRE_MESHES=1` missing packages are a
 //! failure.
 
-use localshape_mesh::{Fill, Format, Limits, Mesh, Surface, fill, read};
+mod common;
+
+use common::near::outside;
+use localshape_mesh::{Cage, Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::bounds;
+use localshape_sim::{Body, Dimension, Solids};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -44,6 +48,15 @@ fn meshes(folder: &Path) -> Vec<(PathBuf, Format)> {
     found
 }
 
+/// Checks that each element has a part inside, and that no node is farther outside than an eighth of a cell.
+fn assert_at_surface(filled: &Filled, side: f64, name: &str) {
+    let Cage { nodes, elements, convex, .. } = filled.cage.clone();
+    let (solids, mass) = (if convex { Solids::Convex } else { Solids::Ordered }, vec![1.0; nodes.len()]);
+    let body = Body::new(Dimension::Space, nodes, mass, elements, solids, None);
+    let found = outside(filled, &body, side);
+    assert_eq!((found.far, found.empty), (0, 0), "{name}, {solids:?}: {found:?}");
+}
+
 /// Fills a surface with elements of every kind, or is told why not.
 fn check_fills(surface: &Surface, name: &str) {
     /// More than twelve cubes along each side need, as tetrahedra.
@@ -61,6 +74,10 @@ fn check_fills(surface: &Surface, name: &str) {
                 let elements = filled.cage.elements.len();
                 assert!((1..=MOST).contains(&elements), "{name}: {elements}");
                 assert_eq!(filled.weights.len(), filled.surface.points.len(), "{name}");
+                let ends_at_surface = matches!(with, Fill::Tetrahedra { .. } | Fill::Polyhedra { .. });
+                if ends_at_surface && filled.surface.measures().closed {
+                    assert_at_surface(&filled, side, name);
+                }
             }
             Err(error) => {
                 assert!(error.help.is_some() && error.message.len() < 400, "{name}: {error}");

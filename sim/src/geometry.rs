@@ -5,7 +5,7 @@ pub use super::contact::ground;
 pub use super::element::{around, kind, ordered};
 pub use super::hull::bounds;
 pub use super::overlap::overlaps;
-pub use super::volume::{volume_by_faces, volumes_at_rest};
+pub use super::volume::{node_volumes, volume_by_faces, volumes_at_rest};
 
 use super::body::Body;
 use super::element::Dimension;

@@ -64,7 +64,19 @@ pub fn volumes_at_rest(body: &Body) -> Vec<f64> {
     at_rest(body, &Affine::all(body))
 }
 
-/// The same, with the elements without a table of faces.
+/// The part of the volume at rest of each node (m³, in the plane m²): what is filled of each element is shared equally by its
+/// nodes.
+pub fn node_volumes(body: &Body) -> Vec<f64> {
+    let mut shares = vec![0.0; body.len()];
+    for (element, (nodes, volume)) in body.elements.iter().zip(volumes_at_rest(body)).enumerate() {
+        let filled = body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+        let share = volume * filled / nodes.len() as f64;
+        nodes.iter().for_each(|&node| shares[node as usize] += share);
+    }
+    shares
+}
+
+/// The same as [`volumes_at_rest`], with the elements without a table of faces.
 pub(super) fn at_rest(body: &Body, affine: &[Affine]) -> Vec<f64> {
     let mut volumes = volumes_by_faces(body, &body.rest, &Crew::new(1));
     for Affine { element, .. } in affine {

@@ -1,7 +1,7 @@
 //! Where a surface cuts the edges of a lattice.
 
 use super::parts::{Parted, Scene};
-use super::{FillError, clip, cubes, lattice};
+use super::{FillError, clip, cubes, embed, lattice};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::{DVec2, DVec3, IVec3};
@@ -25,6 +25,9 @@ pub(super) const AXES: usize = 3;
 /// Distances below this, in halves of the side, are round-off: a crossing so near to the end of an edge counts for both edges that
 /// end there, and a line so near to the side of a triangle meets it.
 const CLOSE: f64 = 1e-9;
+
+/// A place so near to the border of a cube, in halves of the side, belongs to the cube beyond it, too.
+const SLACK: f64 = 1e-6;
 
 /// Where edges are cut, as a part of the way from an end that counts as inside because the body is thin there: for edges along the axes
 /// and for others. Just so far that the end is not moved to the cut.
@@ -58,19 +61,14 @@ impl Lattice {
         Ok(Self { origin: lattice.origin - side, side, cubes: counts.as_ivec3(), has_middles, surface: scaled, inside })
     }
 
-    /// The position of a point (m).
-    pub(super) fn at(&self, point: IVec3) -> DVec3 {
-        self.origin + 0.5 * self.side * point.as_dvec3()
+    /// The position (m) of a place in halves of the side from the origin.
+    pub(super) fn place(&self, at: DVec3) -> DVec3 {
+        self.origin + 0.5 * self.side * at
     }
 
     /// A place (m) in halves of the side from the origin.
     fn halves(&self, at: DVec3) -> DVec3 {
         (at - self.origin) / (0.5 * self.side)
-    }
-
-    /// The position of the point at a part of the way along an edge (m). Coordinates across the axes stay exactly as they are.
-    pub(super) fn along(&self, from: IVec3, edge: usize, part: f64) -> DVec3 {
-        self.origin + 0.5 * self.side * (from.as_dvec3() + part * EDGES[edge].as_dvec3())
     }
 
     /// Whether there is such a point; its coordinates are all odd or all even.
@@ -82,6 +80,21 @@ impl Lattice {
     pub(super) fn len(&self) -> usize {
         let kinds = if self.has_middles { 2 } else { 1 };
         kinds * self.corners()
+    }
+
+    /// The number of edges from each point.
+    fn edges(&self) -> usize {
+        if self.has_middles { EDGES.len() } else { AXES }
+    }
+
+    /// Points of the surface farther than this from all elements, in sides, ask at first for more: cubes have nodes for them.
+    pub(super) fn far(&self) -> f64 {
+        if self.has_middles { embed::FAR } else { 0.3 }
+    }
+
+    /// How often places can be marked to some effect by [`Self::touch`].
+    pub(super) fn marks(&self) -> u8 {
+        if self.has_middles { 1 } else { 2 }
     }
 
     fn corners(&self) -> usize {
@@ -104,6 +117,11 @@ impl Lattice {
         2 * IVec3::from_array(half.map(|half| half as i32)) + kind as i32
     }
 
+    /// Whether a place (m) is inside.
+    pub(super) fn contains(&self, at: DVec3) -> bool {
+        self.inside.contains(self.halves(at))
+    }
+
     /// Whether each point is inside.
     pub(super) fn inside(&self) -> Vec<bool> {
         let counts = (self.cubes + 1).as_usizevec3().to_array();
@@ -115,17 +133,21 @@ impl Lattice {
         inside
     }
 
+    /// The lattice without the cubes outside, and the surface in units of it.
+    pub(super) fn in_cubes(&self) -> (lattice::Lattice, Surface) {
+        let counts = (self.cubes - 2).as_usizevec3().to_array();
+        let lattice = lattice::Lattice { origin: self.origin + self.side, side: self.side, counts };
+        let most = (self.cubes - 2).as_dvec3();
+        let points = self.surface.points.iter().map(|&point| (0.5 * point - 1.0).clamp(DVec3::ZERO, most)).collect();
+        (lattice, Surface { points, triangles: self.surface.triangles.clone(), ..Surface::default() })
+    }
+
     /// The part of each cube that is inside, with x fastest, then y, then z.
     ///
     /// # Errors
     /// If nothing is inside.
     pub(super) fn filled(&self, flaws: &Flaws) -> Result<Vec<f64>, FillError> {
-        // Without the cubes outside.
-        let counts = (self.cubes - 2).as_usizevec3().to_array();
-        let lattice = lattice::Lattice { origin: self.origin + self.side, side: self.side, counts };
-        let most = (self.cubes - 2).as_dvec3();
-        let points = self.surface.points.iter().map(|&point| (0.5 * point - 1.0).clamp(DVec3::ZERO, most)).collect();
-        let scaled = Surface { points, triangles: self.surface.triangles.clone(), ..Surface::default() };
+        let (lattice, scaled) = self.in_cubes();
         let (inside, pieces) = (Inside::new(&scaled), clip::pieces(&scaled, &lattice));
         let scene = if flaws.pieces == 1 { Scene::joined } else { Scene::new };
         let cells = cubes::cells(&scene(&scaled, &lattice, &inside, &pieces), flaws)?;
@@ -142,16 +164,21 @@ impl Lattice {
         ((cube.z * self.cubes.y + cube.y) * self.cubes.x + cube.x) as usize
     }
 
+    /// The lowest corner of a cube.
+    pub(super) fn lowest(&self, cube: i32) -> IVec3 {
+        2 * IVec3::new(cube % self.cubes.x, cube / self.cubes.x % self.cubes.y, cube / self.cubes.x / self.cubes.y)
+    }
+
     /// The place in lists of the cube that contains a place (m), or of the nearest.
     pub(super) fn cube_at(&self, at: DVec3) -> usize {
         self.cube((0.5 * self.halves(at)).floor().as_ivec3().clamp(IVec3::ZERO, self.cubes - 1))
     }
 
     /// The cuts of all edges with one end inside, where the surface crosses them first seen from that end. An edge across a hole of
-    /// the surface, which crosses no triangle, is cut in its middle. Edges with an end inside that is `wide` are cut at
-    /// [`WIDE`].
-    pub(super) fn cuts(&self, is_inside: &[bool], wide: &[bool]) -> Cuts {
-        let edges = if self.has_middles { EDGES.len() } else { AXES };
+    /// the surface, which crosses no triangle, is cut in its middle. Edges with an end inside that is wide are cut at
+    /// [`WIDE`]. Without middles, edges with both ends outside are cut where the surface crosses them first and last.
+    pub(super) fn cuts(&self, is_inside: &[bool], is_wide: impl Fn(usize) -> bool) -> Cuts {
+        let edges = self.edges();
         let crossings = |triangle: &[u32; 3]| {
             let corners = self.surface.corners(*triangle);
             let mut found = Vec::new();
@@ -162,35 +189,45 @@ impl Lattice {
         };
         let mut found: Vec<(u64, f64)> = self.surface.triangles.par_iter().flat_map_iter(crossings).collect();
         found.par_sort_unstable_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
-        let mut cuts = Cuts::default();
+        let mut cuts = Cuts { edges, ..Cuts::default() };
         let mut found = found.into_iter().peekable();
         for index in 0..self.len() {
             let from = self.point(index);
             if !self.holds(from) {
                 continue;
             }
+            let mut ends = [None; AXES];
             for edge in 0..edges {
                 let to = from + EDGES[edge];
-                if !self.holds(to) || is_inside[index] == is_inside[self.index(to)] {
-                    continue;
-                }
                 let own = slot(index, edge);
                 while found.next_if(|next| next.0 < own).is_some() {}
-                let (mut part, mut is_first) = (0.5, true);
+                let mut range = None;
                 while let Some((_, next)) = found.next_if(|next| next.0 == own) {
-                    if is_first || !is_inside[index] {
-                        part = next;
-                    }
-                    is_first = false;
+                    range = Some([range.map_or(next, |[first, _]: [f64; 2]| first), next]);
                 }
+                if !self.holds(to) {
+                    continue;
+                }
+                let mut part = match (range, [index, self.index(to)].map(|end| is_inside[end])) {
+                    (Some([first, last]), [false, false]) => {
+                        ends[edge] = Some(last);
+                        first
+                    }
+                    (_, [one, other]) if one == other => continue,
+                    (range, [is_first, _]) => range.map_or(0.5, |range| range[usize::from(!is_first)]),
+                };
                 let part_wide = WIDE[usize::from(edge >= AXES)];
-                if is_inside[index] && wide[index] {
+                if is_inside[index] && is_wide(index) {
                     part = part_wide;
-                } else if !is_inside[index] && wide[self.index(to)] {
+                } else if !is_inside[index] && is_wide(self.index(to)) {
                     part = 1.0 - part_wide;
                 }
                 cuts.slots.push(own);
                 cuts.parts.push(part);
+            }
+            for (edge, last) in ends.into_iter().enumerate().filter_map(|(edge, last)| Some((edge, last?))) {
+                cuts.slots.push(slot(index, edges + edge));
+                cuts.parts.push(last);
             }
             let point = slot(index, EDGES.len());
             while found.next_if(|next| next.0 < point).is_some() {}
@@ -213,18 +250,26 @@ impl Lattice {
         all.map(move |at| origin + half * at)
     }
 
-    /// Marks the corners of the cell of a place (m): of a tetrahedron of the lattice, or of a cube if there are no middles.
-    pub(super) fn touch(&self, at: DVec3, touched: &mut [bool]) {
+    /// Calls `mark` with the corners of the tetrahedron of the lattice that holds a place (m); without middles, with the lowest corner
+    /// of the cube, or of each that has the place on its border.
+    pub(super) fn touch(&self, at: DVec3, mut mark: impl FnMut(usize)) {
         let at = self.halves(at);
+        if !self.has_middles {
+            let [low, high] = [-SLACK, SLACK].map(|slack| (0.5 * (at + slack)).floor().as_ivec3());
+            let (low, high) = (low.max(IVec3::ONE), high.min(self.cubes - 2));
+            for z in low.z..=high.z {
+                for y in low.y..=high.y {
+                    (low.x..=high.x).for_each(|x| mark(self.index(2 * IVec3::new(x, y, z))));
+                }
+            }
+            return;
+        }
         let low = 2 * (0.5 * at).floor().as_ivec3();
         let mut mark = |corner: IVec3| {
             if self.holds(corner) {
-                touched[self.index(corner)] = true;
+                mark(self.index(corner));
             }
         };
-        if !self.has_middles {
-            return (0..8).for_each(|bit| mark(low + 2 * IVec3::new(bit & 1, bit >> 1 & 1, bit >> 2)));
-        }
         // The tetrahedron is about the edge to the next middle along the farthest axis, at the side of the second one.
         let middle = low + 1;
         let from = at - middle.as_dvec3();
@@ -237,11 +282,23 @@ impl Lattice {
         mark(middle + (far + second - third) / 2);
     }
 
+    /// What [`Self::touch`] marks for places all over the surface; without middles, all cubes with a part `inside`.
+    pub(super) fn touched(&self, surface: &Surface, inside: &[f64]) -> Vec<bool> {
+        let mut touched = vec![false; self.len()];
+        if self.has_middles {
+            let all = surface.triangles.iter().flat_map(|&of| self.samples(of));
+            all.for_each(|at| self.touch(at, |point| touched[point] = true));
+        } else {
+            let numbered = (0..).zip(inside).filter(|(_, inside)| **inside > 0.0);
+            numbered.for_each(|(cube, _)| touched[self.index(self.lowest(cube))] = true);
+        }
+        touched
+    }
+
     /// The neighbours of a point along edges.
     pub(super) fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
         let point = self.point(index);
-        let edges = if self.has_middles { EDGES.len() } else { AXES };
-        let around = EDGES[..edges].iter().flat_map(move |&edge| [point - edge, point + edge]);
+        let around = EDGES[..self.edges()].iter().flat_map(move |&edge| [point - edge, point + edge]);
         around.filter(|&other| self.holds(other)).map(|other| self.index(other))
     }
 
@@ -300,7 +357,8 @@ impl Lattice {
                     if lowest < highest && at == highest {
                         found.push((slot(index, EDGES.len()), 0.0));
                     }
-                    if is_inside[index] != is_inside[self.index(from + direction)] {
+                    let ends = [index, self.index(from + direction)].map(|end| is_inside[end]);
+                    if ends[0] != ends[1] || !(ends[0] || self.has_middles) {
                         found.push((slot(index, edge), (steps - f64::from(at)).clamp(0.0, 1.0)));
                     }
                 }
@@ -321,6 +379,8 @@ fn slot(index: usize, edge: usize) -> u64 {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cuts {
     slots: Vec<u64>,
+    /// The number of edges from each point of the lattice.
+    edges: usize,
     /// The part of the way along the edge, from 0 to 1.
     pub(super) parts: Vec<f64>,
     /// The points of the lattice that are on the surface to round-off, in rising order.
@@ -328,14 +388,19 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    /// The cut of an edge, by its start.
+    /// The cut of an edge, by its start; the first one of an edge with both ends outside.
     pub(super) fn find(&self, index: usize, edge: usize) -> Option<usize> {
         self.slots.binary_search(&slot(index, edge)).ok()
+    }
+
+    /// The last cut of an edge with both ends outside.
+    pub(super) fn last(&self, index: usize, edge: usize) -> Option<usize> {
+        self.find(index, self.edges + edge)
     }
 
     /// The start of the edge of a cut, by its place in lists, and the direction of the edge.
     pub(super) fn edge(&self, cut: usize) -> (usize, usize) {
         let slot = self.slots[cut] as usize;
-        (slot / SLOTS, slot % SLOTS)
+        (slot / SLOTS, slot % SLOTS % self.edges)
     }
 }

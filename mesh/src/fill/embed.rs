@@ -5,19 +5,19 @@
 //! each tetrahedron, equal on both sides of a shared face, and reproduce affine maps. Elements have to be seen whole from the mean
 //! of their nodes, as convex ones are.
 
-use super::cubes::in_part;
 use super::cuts::Lattice;
 use super::draft::Draft;
 use crate::edges::Sets;
 use crate::{Cage, FillError, Flaws, Surface};
-use glam::{DVec3, I64Vec3};
+use glam::{DMat3, DVec3, I64Vec3};
 use localshape_sim::geometry::{around, bounds};
 use localshape_sim::{Body, Dimension, ElementKind, IndexLists, Solids, Weights};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// A point outside of all elements follows the nearest one if it is at most so many sides away: beyond, it would only show how
 /// that element turns.
-const FAR: f64 = 0.75;
+pub(super) const FAR: f64 = 0.75;
 
 /// Elements farther away than so many sides have nothing to do with a point.
 const VERY_FAR: f64 = 2.0;
@@ -26,17 +26,21 @@ const VERY_FAR: f64 = 2.0;
 const ROUNDS: u32 = 16;
 
 /// An element is filled at least by this part.
-const LEAST: f64 = 1e-3;
+pub(super) const LEAST: f64 = 1e-3;
+
+/// A point outside of all elements whose weights in a tetrahedron were larger than this follows the whole element.
+const GENTLE: f64 = 3.0;
 
 /// A weight that is negative by less than this is round-off.
 const CLOSE: f64 = 1e-10;
 
 /// Elements that carry a surface, and its weights.
 ///
-/// `build` makes the elements, given the points of the lattice that count as inside wherever they are. At first there are none. While
-/// points of the surface are far from all elements, or follow elements that do not hang together by faces with those of the rest of
-/// their piece of the surface, the corners of the cells there are added. So thin parts are as wide as cells, and filled in part.
-/// Where that is not enough they go on along the surface, twice as far each time.
+/// `build` makes the elements. It is given how often each place of the lattice was marked, at first never, whether it may leave out
+/// elements on trial, and the part of each cube that is inside, if something is marked. While points of the surface are far from all
+/// elements, or follow elements that do not hang together by faces with those of the rest of their piece of the surface, the lattice
+/// is marked there, and has elements that may be filled in part. Where that is not enough marks go on along the surface, twice as
+/// far each time.
 ///
 /// # Errors
 /// If nothing is inside, or as `build` says.
@@ -44,19 +48,23 @@ pub(super) fn carry(
     surface: &Surface,
     flaws: &Flaws,
     lattice: &Lattice,
-    build: impl Fn(&[bool]) -> Result<Draft, FillError>,
+    build: impl Fn(&[u8], bool, Option<&[f64]>) -> Result<Draft, FillError>,
 ) -> Result<(Cage, Weights), FillError> {
-    let pieces = pieces(surface);
-    let mut wide = vec![false; lattice.len()];
+    let (pieces, _) = pieces(surface);
+    let mut wide = vec![0u8; lattice.len()];
+    let mut inside: Option<Vec<f64>> = None;
     let mut touched = Vec::new();
-    for round in 0..ROUNDS {
-        let draft = build(&wide)?;
+    let (mut round, mut is_bold) = (0, true);
+    while round < ROUNDS {
+        let draft = build(&wide, is_bold, inside.as_deref())?;
         let body = body(&draft.cage);
         let fan = Fan::new(&body);
         let found = fan.locate(&surface.points, lattice.side, VERY_FAR);
         let hung = Hung::new(&body, &pieces, &found);
-        let is_lost =
-            |place: &Option<Place>, piece: u32| place.is_none_or(|place| place.is_far || !hung.carries(&place, piece));
+        let far = if round == 0 { lattice.far() } else { FAR };
+        let is_lost = |place: &Option<Place>, piece: u32| {
+            place.is_none_or(|place| place.distance > far || !hung.carries(&place, piece))
+        };
         let has_lost = |of: &&[u32; 3]| of.iter().any(|&point| is_lost(&found[point as usize], pieces[point as usize]));
         let samples = |of: &[u32; 3]| {
             let piece = pieces[of[0] as usize];
@@ -65,32 +73,45 @@ pub(super) fn carry(
         let (places, of_places): (Vec<DVec3>, Vec<u32>) =
             surface.triangles.iter().filter(has_lost).flat_map(samples).unzip();
         if places.is_empty() {
-            let filled = fan.filled(&draft.is_wide, lattice, flaws)?;
+            let filled = inside.and_then(|inside| fan.filled(&draft.is_wide, lattice, &inside));
             return Ok(hung.finished(draft.cage, filled, &fan, &found));
         }
+        if inside.is_none() {
+            inside = Some(lattice.filled(flaws)?);
+        }
+        let inside = inside.as_deref().unwrap_or_default();
+        // What was left out may be missing.
+        is_bold = !(draft.is_bold && round > 1);
+        if !is_bold {
+            continue;
+        }
         let before = wide.clone();
-        let found = fan.locate(&places, lattice.side, FAR);
+        let mut mark = |point: usize| wide[point] = (before[point] + 1).min(lattice.marks());
+        let found = fan.locate(&places, lattice.side, far);
         for ((&at, &piece), place) in places.iter().zip(&of_places).zip(&found) {
             if is_lost(place, piece) {
-                lattice.touch(at, &mut wide);
+                lattice.touch(at, &mut mark);
             }
         }
         if round > 0 {
             if touched.is_empty() {
-                touched = vec![false; lattice.len()];
-                let all = surface.triangles.iter().flat_map(|&of| lattice.samples(of));
-                all.for_each(|at| lattice.touch(at, &mut touched));
+                touched = lattice.touched(surface, inside);
             }
-            let mut front: Vec<_> = (0..before.len()).filter(|&point| before[point]).collect();
+            let most = lattice.marks();
+            let mut front: Vec<_> = (0..before.len()).filter(|&point| before[point] == most).collect();
             for _ in 0..1 << (round - 1) {
                 let beside = front.iter().flat_map(|&point| lattice.neighbours(point));
-                front =
-                    beside.filter(|&beside| touched[beside] && !std::mem::replace(&mut wide[beside], true)).collect();
+                let is_new = |beside: &usize| touched[*beside] && std::mem::replace(&mut wide[*beside], most) < most;
+                front = beside.filter(is_new).collect();
             }
         }
         if wide == before {
-            break;
+            if !draft.is_bold {
+                break;
+            }
+            is_bold = false;
         }
+        round += 1;
     }
     let message = format!("falls into pieces if it is filled with elements of side {}", lattice.side);
     Err(FillError::new(message, "use a smaller side, or fill it with cubes"))
@@ -106,14 +127,14 @@ pub(super) fn body(cage: &Cage) -> Body {
     Body::new(Dimension::Space, cage.nodes.clone(), mass, cage.elements.clone(), solids, None)
 }
 
-/// The piece of the surface to which each point belongs.
-fn pieces(surface: &Surface) -> Vec<u32> {
+/// The piece of the surface to which each point belongs, and how many there are.
+pub(super) fn pieces(surface: &Surface) -> (Vec<u32>, usize) {
     let mut sets = Sets::new(surface.points.len());
     for &[a, b, c] in &surface.triangles {
         sets.join(a, b);
         sets.join(a, c);
     }
-    sets.numbered().0
+    sets.numbered()
 }
 
 /// How elements hang together.
@@ -172,7 +193,9 @@ impl Hung {
             }
         }
         let spread = |place: &Place| {
-            let (nodes, weights) = fan.spread(place);
+            let is_gentle = place.weights.iter().all(|weight| weight.abs() < GENTLE);
+            let is_simple = fan.of(place.element as usize).len() == 1;
+            let (nodes, weights) = if is_gentle || is_simple { fan.spread(place) } else { fan.affine(place) };
             (nodes.into_iter().map(|node| numbers[node as usize]).collect::<Vec<_>>(), weights)
         };
         let mut weights = Weights::default();
@@ -197,8 +220,8 @@ struct Place {
     element: u32,
     corners: [u32; 4],
     weights: [f64; 4],
-    /// Whether the point is farther from the element than [`FAR`].
-    is_far: bool,
+    /// The distance of the point from the element, in sides.
+    distance: f64,
 }
 
 /// Elements divided into tetrahedra.
@@ -312,47 +335,23 @@ impl Fan {
                 })
             });
             if let Some((simplex, weights)) = containing {
-                return Some(Place { element: simplex.element, corners: simplex.corners, weights, is_far: false });
+                return Some(Place { element: simplex.element, corners: simplex.corners, weights, distance: 0.0 });
             }
-            let (face, distance) = self.nearest(&faces, &outside, point, most * side)?;
+            let of_face = |face: u32| {
+                let [_, a, b, c] = self.corners(&self.outside[face as usize]);
+                [a, b, c]
+            };
+            let (face, distance) = faces.nearest(&outside, of_face, point, most * side)?;
             let simplex = self.outside[face as usize];
             let weights = weights(self.corners(&simplex), point);
-            Some(Place { element: simplex.element, corners: simplex.corners, weights, is_far: distance > FAR * side })
+            Some(Place { element: simplex.element, corners: simplex.corners, weights, distance: distance / side })
         };
         points.par_iter().map(locate).collect()
     }
 
-    /// The simplex with the nearest face on the outside, and its distance, up to a greatest one.
-    fn nearest(&self, faces: &Grid, boxes: &[(DVec3, DVec3)], point: DVec3, most: f64) -> Option<(u32, f64)> {
-        let cell = faces.cell(point);
-        let (mut best, mut nearest) = (None, most);
-        for ring in 0.. {
-            // Faces in this ring are at least so far away.
-            if nearest <= (ring - 1) as f64 * faces.cell {
-                break;
-            }
-            for &face in faces.ring(cell, ring).flat_map(|at| faces.at(at)) {
-                let (low, high) = boxes[face as usize];
-                if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
-                    continue;
-                }
-                let [_, a, b, c] = self.corners(&self.outside[face as usize]);
-                let distance = point.distance(nearest_of([a, b, c], point));
-                if distance < nearest || (distance == nearest && best.is_none_or(|best| face < best)) {
-                    (best, nearest) = (Some(face), distance);
-                }
-            }
-        }
-        Some((best?, nearest))
-    }
-
     /// The part of each element that is filled. What is inside a cube of the lattice, less the elements there that are not wide, fills
     /// its wide ones evenly.
-    fn filled(&self, is_wide: &[bool], lattice: &Lattice, flaws: &Flaws) -> Result<Option<Vec<f64>>, FillError> {
-        if !is_wide.contains(&true) {
-            return Ok(None);
-        }
-        let inside = lattice.filled(flaws)?;
+    fn filled(&self, is_wide: &[bool], lattice: &Lattice, inside: &[f64]) -> Option<Vec<f64>> {
         let cube = lattice.side * lattice.side * lattice.side;
         // The cubes in which an element lies, and the volume there, in cubes.
         let shares = |element: usize| {
@@ -372,15 +371,44 @@ impl Fan {
             let sum = if is_wide { &mut wide } else { &mut full };
             shares(element).for_each(|(cube, volume)| sum[cube] += volume);
         }
-        let part = |element: usize| {
+        let of_wide = |element: usize| {
             let (mut filled, mut all) = (0.0, 0.0);
             for (cube, volume) in shares(element) {
                 filled += volume * ((inside[cube] - full[cube]) / wide[cube]).clamp(0.0, 1.0);
                 all += volume;
             }
-            (filled / all).clamp(LEAST, 1.0)
+            [filled, all]
         };
-        Ok(in_part((0..is_wide.len()).map(|element| if is_wide[element] { part(element) } else { 1.0 }).collect()))
+        let parts: Vec<_> =
+            is_wide.iter().enumerate().map(|(element, is_wide)| is_wide.then(|| of_wide(element))).collect();
+        // What has no room in wide elements of its cube, or no element there, fills the others as well.
+        let [filled, room] =
+            parts.iter().flatten().fold([0.0; 2], |[filled, room], of| [filled + of[0], room + (of[1] - of[0])]);
+        let thin = (0..inside.len()).filter(|&cube| wide[cube] > 0.0 || full[cube] == 0.0);
+        let missing = thin.map(|cube| inside[cube] - full[cube]).sum::<f64>() - filled;
+        let more = if missing > CLOSE { (missing / room).min(1.0) } else { 0.0 };
+        let part = |[filled, all]: [f64; 2]| ((filled + more * (all - filled)) / all).clamp(LEAST, 1.0);
+        is_wide.contains(&true).then(|| parts.into_iter().map(|of| of.map_or(1.0, part)).collect())
+    }
+
+    /// The nodes of the element of a place and the weight of each: the least that reproduce affine maps. They are gentle also where a
+    /// tetrahedron of the element is flat.
+    fn affine(&self, place: &Place) -> (Vec<u32>, Vec<f64>) {
+        let at: DVec3 =
+            place.corners.iter().zip(&place.weights).map(|(&at, weight)| self.points[at as usize] * *weight).sum();
+        let corners = self.of(place.element as usize).iter().flat_map(|simplex| simplex.corners);
+        let nodes: BTreeSet<u32> = corners.filter(|&corner| (corner as usize) < self.nodes).collect();
+        let nodes: Vec<u32> = nodes.into_iter().collect();
+        let places = || nodes.iter().map(|&node| self.points[node as usize]);
+        let share = 1.0 / nodes.len() as f64;
+        let mean = places().sum::<DVec3>() * share;
+        let spread = places()
+            .map(|node| node - mean)
+            .fold(DMat3::ZERO, |sum, from| sum + DMat3::from_cols(from * from.x, from * from.y, from * from.z));
+        let way = spread.inverse() * (at - mean);
+        let along: Vec<f64> = places().map(|node| way.dot(node - mean)).collect();
+        let error = share * along.iter().sum::<f64>();
+        (nodes, along.into_iter().map(|along| share + (along - error)).collect())
     }
 
     /// The nodes of a place and the weight of each.
@@ -407,7 +435,7 @@ impl Fan {
 }
 
 /// The barycentric coordinates of a point.
-fn weights([a, b, c, d]: [DVec3; 4], point: DVec3) -> [f64; 4] {
+pub(super) fn weights([a, b, c, d]: [DVec3; 4], point: DVec3) -> [f64; 4] {
     // From the corners to the point: small numbers have small round-off.
     let [to_a, to_b, to_c, to_d] = [a, b, c, d].map(|corner| corner - point);
     let volumes = [
@@ -421,7 +449,7 @@ fn weights([a, b, c, d]: [DVec3; 4], point: DVec3) -> [f64; 4] {
 }
 
 /// The point of a triangle that is nearest to a point.
-fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+pub(super) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
     let on_line = |from: DVec3, to: DVec3| {
         let along = to - from;
         from + along * (along.dot(point - from) / along.length_squared()).clamp(0.0, 1.0)
@@ -439,7 +467,7 @@ fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
 }
 
 /// Cells of space with the boxes that meet each.
-struct Grid {
+pub(super) struct Grid {
     low: DVec3,
     cell: f64,
     cells: I64Vec3,
@@ -451,7 +479,7 @@ struct Grid {
 
 impl Grid {
     /// A grid with cells of this side, or larger ones if there were far more cells than boxes, as about a slanted rod.
-    fn new(low: DVec3, high: DVec3, mut cell: f64, boxes: usize) -> Self {
+    pub(super) fn new(low: DVec3, high: DVec3, mut cell: f64, boxes: usize) -> Self {
         let counts = |cell: f64| ((high - low) / cell).floor() + 1.0;
         while counts(cell).element_product() > 16.0 * boxes as f64 + 65536.0 {
             cell *= 2.0;
@@ -470,7 +498,7 @@ impl Grid {
     }
 
     /// Lists each box in the cells it meets, in rising order.
-    fn fill(&mut self, boxes: &[(DVec3, DVec3)]) {
+    pub(super) fn fill(&mut self, boxes: &[(DVec3, DVec3)]) {
         let mut starts = vec![0; self.cells.element_product() as usize + 1];
         let each = |visit: &mut dyn FnMut(usize, u32)| {
             for (item, &(low, high)) in (0u32..).zip(boxes) {
@@ -497,6 +525,42 @@ impl Grid {
             ends[cell] += 1;
         });
         (self.starts, self.items) = (starts, items);
+    }
+
+    /// The nearest of triangles, whose boxes are listed, to a point, and its distance, up to a greatest one.
+    pub(super) fn nearest(
+        &self,
+        boxes: &[(DVec3, DVec3)],
+        corners: impl Fn(u32) -> [DVec3; 3],
+        point: DVec3,
+        most: f64,
+    ) -> Option<(u32, f64)> {
+        let cell = self.cell(point);
+        let (mut best, mut nearest) = (None, most);
+        for ring in 0.. {
+            // Those in this ring are at least so far away.
+            if nearest <= (ring - 1) as f64 * self.cell {
+                break;
+            }
+            for &item in self.ring(cell, ring).flat_map(|at| self.at(at)) {
+                let (low, high) = boxes[item as usize];
+                if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
+                    continue;
+                }
+                let distance = point.distance(nearest_of(corners(item), point));
+                if distance < nearest || (distance == nearest && best.is_none_or(|best| item < best)) {
+                    (best, nearest) = (Some(item), distance);
+                }
+            }
+        }
+        Some((best?, nearest))
+    }
+
+    /// What is in the cells of a box; some of it several times.
+    pub(super) fn within(&self, low: DVec3, high: DVec3) -> impl Iterator<Item = &u32> {
+        let (low, high) = (self.cell(low), self.cell(high));
+        let rows = (low.z..=high.z).flat_map(move |z| (low.y..=high.y).map(move |y| [y, z]));
+        rows.flat_map(move |[y, z]| (low.x..=high.x).flat_map(move |x| self.at(I64Vec3::new(x, y, z))))
     }
 
     /// The cell of a point, which may be outside of the grid.
@@ -542,7 +606,7 @@ mod tests {
     /// The weight of each node.
     fn dense(fan: &Fan, simplex: &Simplex, point: DVec3) -> Vec<f64> {
         let weights = weights(fan.corners(simplex), point);
-        let place = Place { element: simplex.element, corners: simplex.corners, weights, is_far: false };
+        let place = Place { element: simplex.element, corners: simplex.corners, weights, distance: 0.0 };
         let mut all = vec![0.0; fan.nodes];
         let (nodes, own) = fan.spread(&place);
         nodes.iter().zip(own).for_each(|(&node, weight)| all[node as usize] += weight);
@@ -580,7 +644,8 @@ mod tests {
         let at = |x: f64, y: f64| DVec3::new(x, y, 0.5);
         let points = [at(0.5, 0.5), at(1.0, 0.5), at(1.3, 0.5), at(1.3, -0.4), at(1.3, -0.9), at(1.3, -9.0)];
         let found = fan.locate(&points, 1.0, VERY_FAR);
-        let elements: Vec<_> = found.iter().map(|place| place.map(|place| (place.element, place.is_far))).collect();
+        let elements: Vec<_> =
+            found.iter().map(|place| place.map(|place| (place.element, place.distance > FAR))).collect();
         let expected = [(0, false), (0, false), (1, false), (1, false), (1, true)];
         assert_eq!(elements[..5], expected.map(Some));
         assert_eq!(elements[5], None);

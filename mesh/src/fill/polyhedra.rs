@@ -1,34 +1,48 @@
 //! Cubes of a lattice, cut at the surface into convex polyhedra.
 //!
-//! An element is the convex hull of the corners of a cube that are inside and of the cuts of its edges. Nodes never leave the edges of
-//! cubes: the hull meets each face of the cube in the polygon of the nodes there, which is the same for the cube on its other side.
+//! An element is the convex hull of the corners of a cube that are inside, of the cuts of its edges, and of a few points in its faces and
+//! in itself. The hull meets each face of the cube in the polygon of the nodes there, which is the same for the cube on its other side.
 //!
 //! Elements would be small around corners that are hardly inside, and need short steps. Cuts near to such a corner are moved: to
 //! the corner, which is then on the surface, or to a quarter of the side away from it. So nodes are within an eighth of the side from
 //! the surface along their edges, and mostly on it.
+//!
+//! Where the surface would be far from all elements, at its sharp corners and where the body is thinner than a cube, edges are also cut
+//! twice, and faces and cubes have nodes of their own at the farthest points of the surface in a few directions. What is thinner
+//! than a quarter of the side there is made so thick, by at most an eighth on each side.
 
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::{Draft, Drafting};
 use super::lattice::too_many;
-use super::{FillError, Filled, embed};
+use super::{FillError, Filled, clip, embed};
 use crate::{Flaws, Surface};
-use glam::IVec3;
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
 
-/// The least distance of a cut from a corner inside, in sides.
+/// The least distance of a cut from a corner inside, and the least thickness of elements where the body is thin, in sides.
 const LEAST: f64 = 0.25;
 
-/// A cut nearer than this to a corner outside is moved to it, in sides: faces with shorter sides would be lost in round-off.
+/// A cut nearer than this to a corner outside is moved to it, in sides: faces with shorter sides would be lost in round-off. Nodes
+/// in faces and in cubes, and those that make the body thicker, keep this distance from the border.
 const CLOSE: f64 = 1.0 / 32.0;
+
+/// Faces and cubes have a node where the surface is farther than this beyond the others in some direction, in sides.
+const BEYOND: f64 = 3.0 / 32.0;
+
+/// Elements of thin parts are thicker than this, in sides, and the mean of the squares of the distances of their nodes from
+/// the mean is at least that of a corner with edges of [`LEAST`], unless there would be none.
+const FLAT: f64 = 1.0 / 16.0;
+const SMALL: f64 = 9.0 / 16.0 * LEAST * LEAST;
 
 /// Fills a surface with cubes of this side that are cut at the surface.
 pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
     let lattice = Lattice::around(&mut surface, side, false, most)?;
-    let truly_inside = lattice.inside();
-    let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |wide| {
-        let is_inside: Vec<bool> = truly_inside.iter().zip(wide).map(|(inside, wide)| inside | wide).collect();
-        let mut cuts = lattice.cuts(&is_inside, wide);
-        let places = places(&lattice, &is_inside, &mut cuts);
-        draft(&lattice, &places, &cuts, wide, most)
+    let is_inside = lattice.inside();
+    let mut cuts = lattice.cuts(&is_inside, |_| false);
+    let places = places(&lattice, &is_inside, &mut cuts);
+    let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |thin, _, inside| {
+        Cutting::new(&lattice, &places, &is_inside, &cuts, thin)
+            .draft(inside, most)
             .map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))
     })?;
     Ok(Filled { cage, surface, weights, flaws })
@@ -49,6 +63,9 @@ fn places(lattice: &Lattice, is_inside: &[bool], cuts: &mut Cuts) -> Vec<Where> 
     for cut in 0..cuts.parts.len() {
         let (from, edge) = cuts.edge(cut);
         let to = lattice.index(lattice.point(from) + EDGES[edge]);
+        if is_inside[from] == is_inside[to] {
+            continue;
+        }
         let part = cuts.parts[cut];
         let (inside, outside, depth) = if is_inside[from] { (from, to, part) } else { (to, from, 1.0 - part) };
         if depth < 0.5 * LEAST {
@@ -68,29 +85,275 @@ fn places(lattice: &Lattice, is_inside: &[bool], cuts: &mut Cuts) -> Vec<Where> 
     places
 }
 
-/// All cubes with a corner inside, or their number if there are more than `most`.
-fn draft(lattice: &Lattice, places: &[Where], cuts: &Cuts, wide: &[bool], most: usize) -> Result<Draft, usize> {
-    let mut drafting = Drafting::new(lattice, cuts, wide, true, most);
-    let cubes = lattice.cubes;
-    let mut nodes = Vec::new();
-    for cube in 0..cubes.element_product() {
-        let low = 2 * IVec3::new(cube % cubes.x, cube / cubes.x % cubes.y, cube / cubes.x / cubes.y);
-        let corner = |bit: i32| low + 2 * IVec3::new(bit & 1, bit >> 1 & 1, bit >> 2);
-        let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|bit| lattice.index(corner(bit)));
-        if !corners.iter().any(|&corner| places[corner] == Where::Inside) {
-            continue;
-        }
-        nodes.clear();
-        nodes.extend(corners.into_iter().filter(|&corner| places[corner] != Where::Outside));
-        for (edge, from) in (0..AXES).flat_map(|edge| (0..8).map(move |from| (edge, from))) {
-            if from >> edge & 1 == 0 {
-                let ends = [corners[from], corners[from | 1 << edge]].map(|end| places[end]);
-                if matches!(ends, [Where::Inside, Where::Outside] | [Where::Outside, Where::Inside]) {
-                    nodes.extend(cuts.find(corners[from], edge).map(|cut| lattice.len() + cut));
-                }
+/// The corners of a cube or of one of its faces, counted from the lowest with x fastest, then y, then z.
+fn corners(across: Option<usize>) -> impl Iterator<Item = usize> + Clone {
+    (0..8usize).filter(move |bits| across.is_none_or(|axis| bits >> axis & 1 == 0))
+}
+
+/// The point of the lattice at a corner of the cube with this lowest point.
+fn corner(low: IVec3, bits: usize) -> IVec3 {
+    low + 2 * IVec3::new(bits as i32 & 1, bits as i32 >> 1 & 1, bits as i32 >> 2)
+}
+
+/// Nodes in faces and in cubes.
+#[derive(Default)]
+struct Inner {
+    /// The face or the cube of each node, in rising order: the place of its lowest corner times 4, and the axis across the face, or 3.
+    keys: Vec<usize>,
+    /// In halves of the side from the origin.
+    nodes: Vec<DVec3>,
+}
+
+impl Inner {
+    /// The places in lists of the nodes of a face or a cube.
+    fn of(&self, low: usize, which: usize) -> std::ops::Range<usize> {
+        let key = 4 * low + which;
+        self.keys.partition_point(|&other| other < key)..self.keys.partition_point(|&other| other <= key)
+    }
+}
+
+/// Cubes that are being cut.
+struct Cutting<'l> {
+    lattice: &'l Lattice,
+    places: &'l [Where],
+    is_inside: &'l [bool],
+    cuts: &'l Cuts,
+    /// How often each cube, by its lowest corner, was found to hold parts of the surface that are far from all elements.
+    thin: &'l [u8],
+    inner: Inner,
+}
+
+impl<'l> Cutting<'l> {
+    fn new(lattice: &'l Lattice, places: &'l [Where], is_inside: &'l [bool], cuts: &'l Cuts, thin: &'l [u8]) -> Self {
+        let mut cutting = Self { lattice, places, is_inside, cuts, thin, inner: Inner::default() };
+        if thin.iter().any(|&thin| thin > 0) {
+            let found = cutting.candidates();
+            let (faces, cubes): (Vec<_>, Vec<_>) =
+                found.chunk_by(|one, other| one.0 == other.0).partition(|of| of[0].0 % 4 < 3);
+            for of in [faces, cubes] {
+                let made: Vec<_> = of.into_par_iter().flat_map_iter(|of| cutting.extremes(of)).collect();
+                let mut all: Vec<_> =
+                    cutting.inner.keys.iter().copied().zip(cutting.inner.nodes.iter().copied()).collect();
+                all.extend(made);
+                all.sort_by_key(|&(key, _)| key);
+                (cutting.inner.keys, cutting.inner.nodes) = all.into_iter().unzip();
             }
         }
-        drafting.push(&nodes);
+        cutting
     }
-    drafting.finished()
+
+    /// Where the surface is cut by the faces of thin cubes, and the corners of its parts in them, with their faces and cubes.
+    fn candidates(&self) -> Vec<(usize, DVec3)> {
+        let (lattice, surface) = self.lattice.in_cubes();
+        let of_triangle = |&of: &[u32; 3]| {
+            let mut found = Vec::new();
+            clip::cut(surface.corners(of), &lattice, |cell, polygon| {
+                let low = 2 * (IVec3::from_array(cell.map(|at| at as i32)) + 1);
+                let index = self.lattice.index(low);
+                if self.thin[index] == 0 {
+                    return;
+                }
+                for &place in polygon.corners() {
+                    let at = 2.0 * (place + 1.0);
+                    found.push((4 * index + 3, at));
+                    for axis in 0..AXES {
+                        if at[axis] == f64::from(low[axis]) {
+                            found.push((4 * index + axis, at));
+                        } else if at[axis] == f64::from(low[axis] + 2) {
+                            found.push((4 * self.lattice.index(low + EDGES[axis]) + axis, at));
+                        }
+                    }
+                }
+            });
+            found
+        };
+        let mut found: Vec<_> = surface.triangles.par_iter().flat_map_iter(of_triangle).collect();
+        found.par_sort_by_key(|&(key, _)| key);
+        found
+    }
+
+    /// The nodes of a face or a cube in directions in which the surface there is far beyond the nodes known.
+    fn extremes(&self, candidates: &[(usize, DVec3)]) -> Vec<(usize, DVec3)> {
+        let key = candidates[0].0;
+        let across = Some(key % 4).filter(|&axis| axis < AXES);
+        let low = self.lattice.point(key / 4);
+        let mut known = Vec::new();
+        self.nodes(low, across, &mut known);
+        // Where nothing else is inside, elements hold all of the body, and are filled in part.
+        let is_free = !known.iter().any(|&node| node < self.lattice.len());
+        let least_thicker = if is_free { 2.0 * CLOSE } else { 0.0 };
+        let mut known: Vec<DVec3> = known.into_iter().map(|node| self.position(node)).collect();
+        let mut margin = DVec3::splat(2.0 * CLOSE);
+        let mut size = DVec3::splat(2.0);
+        if let Some(axis) = across {
+            (margin[axis], size[axis]) = (0.0, 0.0);
+        }
+        let (least, greatest) = (low.as_dvec3() + margin, low.as_dvec3() + size - margin);
+        let mut made = Vec::new();
+        for direction in directions(across) {
+            let along = |at: DVec3| at.dot(direction);
+            let (mut back, reached) = range(known.iter().map(|&at| along(at)));
+            let mut farthest = candidates[0].1;
+            for &(_, at) in candidates {
+                back = back.min(along(at));
+                if along(at) > along(farthest) {
+                    farthest = at;
+                }
+            }
+            let thicker = (LEAST - 0.5 * (along(farthest) - back)).max(least_thicker);
+            let node = (farthest + thicker * direction).clamp(least, greatest);
+            if along(node) - reached > 2.0 * BEYOND {
+                known.push(node);
+                made.push((key, node));
+            }
+        }
+        made
+    }
+
+    /// Appends the nodes of a cube, or of its lower face across an axis: corners, then cuts, then others, counted on.
+    fn nodes(&self, low: IVec3, across: Option<usize>, nodes: &mut Vec<usize>) {
+        let at = |bits: usize| self.lattice.index(corner(low, bits));
+        nodes.extend(corners(across).map(at).filter(|&corner| self.places[corner] != Where::Outside));
+        for edge in (0..AXES).filter(|&edge| across != Some(edge)) {
+            for bits in corners(across).filter(|bits| bits >> edge & 1 == 0) {
+                self.cuts_of(corner(low, bits), edge)
+                    .into_iter()
+                    .flatten()
+                    .for_each(|cut| nodes.push(self.lattice.len() + cut));
+            }
+        }
+        let inner = |node: usize| self.lattice.len() + self.cuts.parts.len() + node;
+        let index = self.lattice.index(low);
+        match across {
+            Some(axis) => nodes.extend(self.inner.of(index, axis).map(inner)),
+            None => {
+                for (axis, beyond) in EDGES[..AXES].iter().enumerate() {
+                    for of in [index, self.lattice.index(low + beyond)] {
+                        nodes.extend(self.inner.of(of, axis).map(inner));
+                    }
+                }
+                nodes.extend(self.inner.of(index, 3).map(inner));
+            }
+        }
+    }
+
+    /// The cuts of an edge that are nodes.
+    fn cuts_of(&self, from: IVec3, edge: usize) -> [Option<usize>; 2] {
+        let ends = [from, from + EDGES[edge]].map(|end| self.lattice.index(end));
+        let first = || self.cuts.find(ends[0], edge);
+        let is_deep = |cut: usize, end: usize| {
+            let depth = if end == 0 { self.cuts.parts[cut] } else { 1.0 - self.cuts.parts[cut] };
+            (LEAST..1.0 - CLOSE).contains(&depth)
+        };
+        match ends.map(|end| self.places[end]) {
+            [Where::Inside, Where::Outside] | [Where::Outside, Where::Inside] => [first(), None],
+            // From a corner on the surface along the surface, or into the body and out of it.
+            [Where::On, Where::Outside] => {
+                let cut = if self.is_inside[ends[0]] { first() } else { self.cuts.last(ends[0], edge) };
+                [cut.filter(|&cut| is_deep(cut, 0)), None]
+            }
+            [Where::Outside, Where::On] => [first().filter(|&cut| is_deep(cut, 1)), None],
+            [Where::Outside, Where::Outside] if self.is_thin(from, edge) => [first(), self.cuts.last(ends[0], edge)],
+            _ => [None; 2],
+        }
+    }
+
+    /// Whether one of the cubes around an edge is thin.
+    fn is_thin(&self, from: IVec3, edge: usize) -> bool {
+        let [one, other] = [EDGES[(edge + 1) % AXES], EDGES[(edge + 2) % AXES]];
+        let around = [from, from - one, from - other, from - one - other];
+        around.into_iter().any(|low| self.lattice.holds(low) && self.thin[self.lattice.index(low)] > 0)
+    }
+
+    /// Where a node is, in halves of the side from the origin.
+    fn position(&self, node: usize) -> DVec3 {
+        let Some(cut) = node.checked_sub(self.lattice.len()) else { return self.lattice.point(node).as_dvec3() };
+        let Some(inner) = cut.checked_sub(self.cuts.parts.len()) else {
+            let (from, edge) = self.cuts.edge(cut);
+            return self.lattice.point(from).as_dvec3() + self.part(cut) * EDGES[edge].as_dvec3();
+        };
+        self.inner.nodes[inner]
+    }
+
+    /// The part of the way along its edge at which a cut is. Two cuts of an edge are moved apart if they are close to each other.
+    fn part(&self, cut: usize) -> f64 {
+        let part = self.cuts.parts[cut];
+        let (from, edge) = self.cuts.edge(cut);
+        let ends = [from, self.lattice.index(self.lattice.point(from) + EDGES[edge])];
+        if let [Where::Outside, Where::Outside] = ends.map(|end| self.places[end])
+            && let [Some(first), Some(last)] = [self.cuts.find(from, edge), self.cuts.last(from, edge)]
+        {
+            let apart = 0.5 * (LEAST - (self.cuts.parts[last] - self.cuts.parts[first])).max(0.0);
+            return (if cut == first { part - apart } else { part + apart }).clamp(CLOSE, 1.0 - CLOSE);
+        }
+        part
+    }
+
+    /// All cubes with a corner inside and those of thin parts, or their number if there are more than `most`. `filled` is the part of
+    /// each cube that is inside, known if there are thin parts.
+    fn draft(&self, filled: Option<&[f64]>, most: usize) -> Result<Draft, usize> {
+        let draft = self.elements(filled, most, false)?;
+        if draft.is_wide.is_empty() { self.elements(filled, most, true) } else { Ok(draft) }
+    }
+
+    /// The elements; if they are alone, those that are small, too.
+    fn elements(&self, filled: Option<&[f64]>, most: usize, is_alone: bool) -> Result<Draft, usize> {
+        let mut drafting =
+            Drafting::new(true, self.lattice.len() + self.cuts.parts.len() + self.inner.nodes.len(), most);
+        let mut nodes = Vec::new();
+        for cube in 0..self.lattice.cubes.element_product() {
+            let low = self.lattice.lowest(cube);
+            let inside = || {
+                let all = corners(None).map(|bits| self.lattice.index(corner(low, bits)));
+                all.filter(|&corner| self.places[corner] == Where::Inside)
+            };
+            let has_inside = inside().next().is_some();
+            let thin = self.thin[self.lattice.index(low)];
+            let is_filled = || filled.is_some_and(|filled| filled[cube as usize] > embed::LEAST * CLOSE);
+            // Surfaces laid on each other enclose nothing, and their points are carried all the same.
+            if !(has_inside || thin > 1 || thin == 1 && is_filled()) {
+                continue;
+            }
+            nodes.clear();
+            self.nodes(low, None, &mut nodes);
+            let is_beside = || {
+                let mean = nodes.iter().map(|&node| self.position(node)).sum::<DVec3>() / nodes.len() as f64;
+                !self.lattice.contains(self.lattice.place(mean))
+            };
+            // Corners on the surface count as inside or as outside. What is between them may be beside the body.
+            let is_doubtful = inside().all(|corner| self.cuts.on.binary_search(&corner).is_ok());
+            let is_element = if has_inside { !(is_doubtful && is_beside()) } else { self.is_element(&nodes, is_alone) };
+            if is_element {
+                drafting.push(&nodes, thin > 0, |node| self.lattice.place(self.position(node)));
+            }
+        }
+        drafting.finished()
+    }
+
+    /// Whether nodes of a thin part are an element, or would be if it were the only one.
+    fn is_element(&self, nodes: &[usize], is_alone: bool) -> bool {
+        let all: Vec<_> = nodes.iter().map(|&node| self.position(node)).collect();
+        let mean = all.iter().sum::<DVec3>() / all.len() as f64;
+        let spread = all.iter().map(|at| at.distance_squared(mean)).sum::<f64>() / all.len() as f64;
+        let is_flat = |direction: DVec3| {
+            let (low, high) = range(all.iter().map(|at| at.dot(direction)));
+            high - low < 2.0 * FLAT
+        };
+        all.len() > 3 && (is_alone || spread >= 4.0 * SMALL) && !directions(None).any(is_flat)
+    }
+}
+
+/// The least and the greatest of numbers.
+fn range(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
+    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| (low.min(number), high.max(number)))
+}
+
+/// Directions to all sides, or in the plane across an axis: along axes first, then between two of them, then between three.
+pub(super) fn directions(across: Option<usize>) -> impl Iterator<Item = DVec3> {
+    let all = (1..=3).flat_map(|length| {
+        let some = (0..27).map(|at| IVec3::new(at % 3, at / 3 % 3, at / 9) - 1);
+        some.filter(move |direction| direction.length_squared() == length)
+    });
+    let all = all.filter(move |direction| across.is_none_or(|axis| direction[axis] == 0));
+    all.map(|direction| direction.as_dvec3().normalize())
 }

@@ -7,6 +7,7 @@
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::{Draft, Drafting};
 use super::lattice::too_many;
+use super::tighten::{cosines, tightened};
 use super::{FillError, Filled, embed};
 use crate::{Flaws, Surface};
 use glam::{DVec3, IVec3};
@@ -19,11 +20,15 @@ const NEAR: [f64; 2] = [0.285, 0.399];
 pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
     let lattice = Lattice::around(&mut surface, side, true, most)?;
     let truly_inside = lattice.inside();
-    let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |wide| {
-        let is_inside: Vec<bool> = truly_inside.iter().zip(wide).map(|(inside, wide)| inside | wide).collect();
-        let cuts = lattice.cuts(&is_inside, wide);
+    let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |wide, is_bold, _| {
+        let is_inside: Vec<bool> = truly_inside.iter().zip(wide).map(|(inside, wide)| *inside || *wide > 0).collect();
+        let cuts = lattice.cuts(&is_inside, |point| wide[point] > 0 && !truly_inside[point]);
         let found = Stuffing::new(&lattice, &is_inside, cuts).draft(wide, most);
-        found.map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))
+        let mut draft = found.map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))?;
+        if draft.is_wide.contains(&true) {
+            tightened(&mut draft, &surface, &lattice, is_bold);
+        }
+        Ok(draft)
     })?;
     Ok(Filled { cage, surface, weights, flaws })
 }
@@ -83,11 +88,10 @@ impl<'l> Stuffing<'l> {
     }
 
     /// All tetrahedra, or their number if there are more than `most`.
-    fn draft(&self, wide: &[bool], most: usize) -> Result<Draft, usize> {
-        let mut drafting = Drafting::new(self.lattice, &self.cuts, wide, false, most);
-        let cubes = self.lattice.cubes;
-        for cube in 0..cubes.element_product() {
-            let middle = 2 * IVec3::new(cube % cubes.x, cube / cubes.x % cubes.y, cube / cubes.x / cubes.y) + 1;
+    fn draft(&self, wide: &[u8], most: usize) -> Result<Draft, usize> {
+        let mut drafting = Drafting::new(false, self.lattice.len() + self.cuts.parts.len(), most);
+        for cube in 0..self.lattice.cubes.element_product() {
+            let middle = self.lattice.lowest(cube) + 1;
             for axis in 0..AXES {
                 let beside = middle + EDGES[axis];
                 if !self.lattice.holds(beside) {
@@ -96,7 +100,7 @@ impl<'l> Stuffing<'l> {
                 let [along, u, v] = [0, 1, 2].map(|turn| EDGES[(axis + turn) % AXES] / 2);
                 let ring = [-u - v, u - v, u + v, v - u].map(|corner| middle + along + corner);
                 for start in 0..4 {
-                    self.cut([middle, beside, ring[start], ring[(start + 1) % 4]], &mut drafting);
+                    self.cut([middle, beside, ring[start], ring[(start + 1) % 4]], wide, &mut drafting);
                 }
             }
         }
@@ -104,7 +108,7 @@ impl<'l> Stuffing<'l> {
     }
 
     /// Appends the tetrahedra of the part inside of a tetrahedron of the lattice.
-    fn cut(&self, corners: [IVec3; 4], drafting: &mut Drafting<'_>) {
+    fn cut(&self, corners: [IVec3; 4], wide: &[u8], drafting: &mut Drafting) {
         let place = |corner: IVec3| self.places[self.lattice.index(corner)];
         let count = |side| corners.iter().filter(|&&corner| place(corner) == side).count();
         let (ins, outs) = (count(Where::Inside), count(Where::Outside));
@@ -118,7 +122,10 @@ impl<'l> Stuffing<'l> {
             Where::Outside => 2,
         });
         let [a, b, c, d] = sorted;
-        let mut add = |corners: [Corner; 4]| drafting.push(&ordered(corners));
+        let mut add = |corners: [Corner; 4]| {
+            let is_wide = corners.iter().any(|&corner| self.ends(corner).into_iter().any(|end| wide[end] > 0));
+            drafting.push(&ordered(corners), is_wide, |node| self.lattice.place(self.position(node)));
+        };
         let (whole, cut) = (|point| self.whole(point), |inside, outside| self.cut_of(inside, outside));
         match [ins, outs] {
             [_, 0] => add(sorted.map(whole)),
@@ -168,10 +175,21 @@ impl<'l> Stuffing<'l> {
         Corner { node, place: 2 * point }
     }
 
-    /// Where a corner is, in halves of the side.
-    fn position(&self, corner: Corner) -> DVec3 {
+    /// The point of the lattice that a corner is, or the ends of the edge of its cut.
+    fn ends(&self, corner: Corner) -> [usize; 2] {
         match corner.node.checked_sub(self.places.len()) {
-            None => self.lattice.point(corner.node).as_dvec3(),
+            None => [corner.node; 2],
+            Some(cut) => {
+                let (from, edge) = self.cuts.edge(cut);
+                [from, self.lattice.index(self.lattice.point(from) + EDGES[edge])]
+            }
+        }
+    }
+
+    /// Where a node is, in halves of the side from the origin.
+    fn position(&self, node: usize) -> DVec3 {
+        match node.checked_sub(self.places.len()) {
+            None => self.lattice.point(node).as_dvec3(),
             Some(cut) => {
                 let (from, edge) = self.cuts.edge(cut);
                 self.lattice.point(from).as_dvec3() + self.cuts.parts[cut] * EDGES[edge].as_dvec3()
@@ -181,12 +199,7 @@ impl<'l> Stuffing<'l> {
 
     /// The cosine of the smallest dihedral angle of a tetrahedron.
     fn sharpest(&self, corners: [Corner; 4]) -> f64 {
-        let [a, b, c, d] = corners.map(|corner| self.position(corner));
-        // All look in, or all out.
-        let normals = [(c - b).cross(d - b), (d - a).cross(c - a), (b - a).cross(d - a), (c - a).cross(b - a)];
-        let normals = normals.map(DVec3::normalize);
-        let pairs = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
-        pairs.into_iter().map(|[one, other]| -normals[one].dot(normals[other])).fold(-1.0, f64::max)
+        cosines(corners.map(|corner| self.position(corner.node))).into_iter().fold(-1.0, f64::max)
     }
 
     /// The cut between a point inside and one outside.

@@ -1,6 +1,8 @@
 //! Surfaces to test with.
 #![allow(dead_code, unreachable_pub, reason = "each test uses some")]
 
+pub mod near;
+
 use glam::DVec3;
 use localshape_mesh::Surface;
 

@@ -3,7 +3,7 @@
 use super::Place;
 use crate::reading::collector::{Collector, key_path, written};
 use crate::scene::file::{BodyFile, LARGEST};
-use crate::sim::geometry::volumes_at_rest;
+use crate::sim::geometry::node_volumes;
 use crate::sim::{Body, Dimension};
 
 /// The mass of each node of a body without masses of its nodes (kg), or `None` after reporting a mistake. Nodes may have parts of the
@@ -16,7 +16,7 @@ pub(super) fn resolve(
     report: &mut Collector<'_>,
 ) -> Option<Vec<f64>> {
     let nodes = body.len();
-    let volumes = || volumes.unwrap_or_else(|| shares(body));
+    let volumes = || volumes.unwrap_or_else(|| node_volumes(body));
     let (key, masses) = match (file.density, file.mass_total) {
         (Some(density), _) => {
             let volumes = volumes();
@@ -54,32 +54,4 @@ pub(super) fn resolve(
         return None;
     }
     Some(masses)
-}
-
-/// The part of the body's volume at rest (m³, in the plane m²) of each node: what is filled of each element is shared equally by its
-/// nodes.
-fn shares(body: &Body) -> Vec<f64> {
-    let mut shares = vec![0.0; body.len()];
-    for (element, (nodes, volume)) in body.elements.iter().zip(volumes_at_rest(body)).enumerate() {
-        let filled = body.fill.as_ref().map_or(1.0, |fill| fill[element]);
-        let share = volume * filled / nodes.len() as f64;
-        nodes.iter().for_each(|&node| shares[node as usize] += share);
-    }
-    shares
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sim::Solids;
-    use glam::DVec3;
-
-    #[test]
-    fn what_is_filled_of_an_element_is_shared_by_its_nodes() {
-        let rest = (0..6).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0)).collect();
-        let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
-        let body = Body::new(Dimension::Plane, rest, vec![1.0; 6], elements, Solids::Ordered, None);
-        let body = Body { fill: Some(vec![1.0, 0.5]), ..body };
-        assert_eq!(shares(&body), [0.25, 0.25, 0.375, 0.375, 0.125, 0.125]);
-    }
 }

@@ -1,0 +1,128 @@
+//! Parts of a surface that stand apart, each filled by itself.
+
+use super::embed::pieces;
+use super::lattice::too_many;
+use super::{Cage, FillError, Filled, cubes};
+use crate::Surface;
+use crate::edges::{EdgeUse, Sets, net};
+use glam::DVec3;
+use localshape_sim::geometry::node_volumes;
+use localshape_sim::{Body, Dimension, Solids};
+use rayon::prelude::*;
+
+/// Fills each part of a surface by itself, so that no element reaches from one into another.
+///
+/// # Errors
+/// As `fill`, or if all parts together need more than `most` elements of this side.
+pub(super) fn fill(
+    mut surface: Surface,
+    side: f64,
+    most: usize,
+    fill: impl Fn(Surface) -> Result<Filled, FillError> + Sync,
+) -> Result<Filled, FillError> {
+    let fill = |part: Surface| -> Result<Filled, FillError> {
+        let mut filled = fill(part)?;
+        filled.cage.overlap = cubes::overlap_of(&filled, side, most)?;
+        Ok(filled)
+    };
+    let (part_of, count) = parts(&surface);
+    if count < 2 {
+        return fill(surface);
+    }
+    let mut parts = vec![Surface::default(); count];
+    let mut numbers = Vec::with_capacity(surface.points.len());
+    for (&part, &point) in part_of.iter().zip(&surface.points) {
+        let points = &mut parts[part as usize].points;
+        numbers.push(points.len() as u32);
+        points.push(point);
+    }
+    for &of in &surface.triangles {
+        parts[part_of[of[0] as usize] as usize].triangles.push(of.map(|point| numbers[point as usize]));
+    }
+    // The first error is told, whichever part is filled first.
+    let filled: Vec<_> = parts.into_par_iter().map(&fill).collect();
+    let filled = filled.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let needed: usize = filled.iter().map(|part| part.cage.elements.len()).sum();
+    if needed > most {
+        return Err(too_many(&surface.measures(), side, needed as f64, most, ""));
+    }
+    let mut whole = Filled { surface: Surface::default(), ..filled[0].clone() };
+    whole.cage.volumes = Some(filled.iter().flat_map(volumes).collect());
+    whole.cage.overlap = filled.iter().map(|part| part.cage.overlap).sum();
+    let mut firsts = vec![0];
+    for part in &filled[1..] {
+        let cage = &mut whole.cage;
+        let first = cage.nodes.len() as u32;
+        firsts.push(first);
+        let full = |cage: &Cage| cage.filled.clone().unwrap_or_else(|| vec![1.0; cage.elements.len()]);
+        if cage.filled.is_some() || part.cage.filled.is_some() {
+            cage.filled = Some([full(cage), full(&part.cage)].concat());
+        }
+        cage.nodes.extend(&part.cage.nodes);
+        cage.elements.append(&part.cage.elements, first);
+    }
+    whole.weights = Default::default();
+    for ((&part, &number), point) in part_of.iter().zip(&numbers).zip(&mut surface.points) {
+        let (part, first) = (&filled[part as usize], firsts[part as usize]);
+        *point = part.surface.points[number as usize];
+        let (nodes, weights) = part.weights.of(number as usize);
+        whole.weights.push(&nodes.iter().map(|node| first + node).collect::<Vec<_>>(), weights);
+    }
+    Ok(Filled { surface, ..whole })
+}
+
+/// The volume of each node of a part (m³), together that inside its surface where this is closed.
+fn volumes(part: &Filled) -> Vec<f64> {
+    let Cage { nodes, elements, filled, convex, overlap, .. } = &part.cage;
+    let solids = if *convex { Solids::Convex } else { Solids::Ordered };
+    let mut body =
+        Body::new(Dimension::Space, nodes.clone(), vec![1.0; nodes.len()], elements.clone(), solids, None);
+    body.fill.clone_from(filled);
+    let (mut volumes, measures) = (node_volumes(&body), part.surface.measures());
+    if measures.closed {
+        let found: f64 = volumes.iter().sum();
+        volumes.iter_mut().for_each(|volume| *volume *= (measures.volume - overlap) / found);
+    }
+    volumes
+}
+
+/// The part of the surface to which each point belongs, and how many there are: pieces whose boxes meet are one part, and so are
+/// all that enclose nothing by themselves.
+fn parts(surface: &Surface) -> (Vec<u32>, usize) {
+    let (piece_of, count) = pieces(surface);
+    let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
+    for (&piece, &point) in piece_of.iter().zip(&surface.points) {
+        let (low, high) = &mut boxes[piece as usize];
+        (*low, *high) = (low.min(point), high.max(point));
+    }
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&one, &other| boxes[one].0.x.total_cmp(&boxes[other].0.x));
+    let mut sets = Sets::new(count);
+    for (at, &one) in order.iter().enumerate() {
+        let (low, high) = boxes[one];
+        for &other in order[at + 1..].iter().take_while(|&&other| boxes[other].0.x <= high.x) {
+            if boxes[other].0.cmple(high).all() && boxes[other].1.cmpge(low).all() {
+                sets.join(one as u32, other as u32);
+            }
+        }
+    }
+    // What is open, or has no volume, has no inside without the others.
+    let mut volumes = vec![0.0; count];
+    for &of in &surface.triangles {
+        let piece = sets.of(piece_of[of[0] as usize]) as usize;
+        let [a, b, c] = surface.corners(of).map(|corner| corner - boxes[piece].0);
+        volumes[piece] += a.dot(b.cross(c));
+    }
+    for edge in EdgeUse::all(&surface.triangles).chunk_by(EdgeUse::same).filter(|edge| net(edge) != 0) {
+        volumes[sets.of(piece_of[edge[0].low as usize]) as usize] = f64::NEG_INFINITY;
+    }
+    let is_solid = |piece: u32, sets: &mut Sets| volumes[sets.of(piece) as usize] > 0.0;
+    let first = (0..count as u32).find(|&piece| is_solid(piece, &mut sets)).unwrap_or(0);
+    for piece in 0..count as u32 {
+        if !is_solid(piece, &mut sets) {
+            sets.join(piece, first);
+        }
+    }
+    let (part_of, count) = sets.numbered();
+    (piece_of.into_iter().map(|piece| part_of[piece as usize]).collect(), count)
+}

@@ -1,0 +1,192 @@
+//! Tetrahedra where the body is thinner than they are: drawn to the surface, and none beside it.
+
+use super::cuts::Lattice;
+use super::draft::Draft;
+use super::embed::{Grid, nearest_of, weights};
+use super::polyhedra::directions;
+use crate::Surface;
+use glam::DVec3;
+use localshape_sim::IndexLists;
+use localshape_sim::geometry::bounds;
+use rayon::prelude::*;
+
+/// Nodes farther outside than this are drawn to the surface, in sides, up to this distance.
+const NEAR: f64 = 0.12;
+
+/// How often all nodes are drawn, and which parts of the way are tried each time.
+const SWEEPS: usize = 6;
+const PARTS: [f64; 3] = [0.7, 0.4, 0.15];
+
+/// How far beside its place near to the surface a node is tried that finds no room there, in sides.
+const BESIDE: [f64; 3] = [0.15, 0.3, 0.45];
+
+/// The cosines of the greatest and the least dihedral angle that drawn nodes may leave: 164.5° and 11°.
+const COSINES: [f64; 2] = [-0.9636, 0.9816];
+
+/// The least mean of the squares of the distances of four nodes from their mean, in sides, that drawn nodes may leave: an eighth
+/// of that of tetrahedra of the lattice, and a little more.
+const SMALL: f64 = 0.04;
+
+/// What reaches into a tetrahedron by less than this part of its heights does not count.
+const SLIGHT: f64 = 1e-3;
+
+/// Triangles of a surface by their place.
+struct Near<'s> {
+    surface: &'s Surface,
+    lattice: &'s Lattice,
+    boxes: Vec<(DVec3, DVec3)>,
+    grid: Grid,
+}
+
+impl<'s> Near<'s> {
+    fn new(surface: &'s Surface, lattice: &'s Lattice) -> Self {
+        let (low, high) = bounds(&surface.points);
+        let boxes: Vec<_> = surface.triangles.iter().map(|&of| bounds(&surface.corners(of))).collect();
+        let mut grid = Grid::new(low, high, lattice.side, boxes.len());
+        grid.fill(&boxes);
+        Self { surface, lattice, boxes, grid }
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.surface.corners(self.surface.triangles[triangle as usize])
+    }
+
+    /// The nearest point of the surface within a distance.
+    fn nearest(&self, point: DVec3, most: f64) -> Option<DVec3> {
+        let (triangle, _) = self.grid.nearest(&self.boxes, |triangle| self.corners(triangle), point, most)?;
+        Some(nearest_of(self.corners(triangle), point))
+    }
+
+    /// Whether the surface passes a tetrahedron.
+    fn passes(&self, corners: [DVec3; 4]) -> bool {
+        let (low, high) = bounds(&corners);
+        let is_near = |&&triangle: &&u32| {
+            let (from, to) = self.boxes[triangle as usize];
+            from.cmple(high).all() && to.cmpge(low).all()
+        };
+        let reaches_in = |&triangle: &u32| {
+            let mut polygon = self.corners(triangle).map(|corner| weights(corners, corner)).to_vec();
+            for side in 0..4 {
+                let above = |at: &[f64; 4]| at[side] - SLIGHT;
+                let mut kept = Vec::with_capacity(polygon.len() + 1);
+                for (at, from) in polygon.iter().enumerate() {
+                    let to = &polygon[(at + 1) % polygon.len()];
+                    let (here, there) = (above(from), above(to));
+                    if here > 0.0 {
+                        kept.push(*from);
+                    }
+                    if (here > 0.0) != (there > 0.0) {
+                        let part = here / (here - there);
+                        kept.push([0, 1, 2, 3].map(|of| from[of] + part * (to[of] - from[of])));
+                    }
+                }
+                polygon = kept;
+            }
+            !polygon.is_empty()
+        };
+        self.grid.within(low, high).filter(is_near).any(reaches_in)
+    }
+}
+
+/// Draws the nodes of wide tetrahedra to the surface as far as angles allow, and leaves out those that are beside it. If `is_bold`,
+/// those whose nodes stay far from it are left out, too.
+pub(super) fn tightened(draft: &mut Draft, surface: &Surface, lattice: &Lattice, is_bold: bool) {
+    let near = Near::new(surface, lattice);
+    near.leave_out(draft, &[]);
+    let far = near.draw(draft);
+    draft.is_bold = is_bold && !far.is_empty();
+    near.leave_out(draft, if is_bold { &far } else { &[] });
+}
+
+impl Near<'_> {
+    /// Leaves out wide elements without a part inside, and those with one of some nodes, in rising order.
+    fn leave_out(&self, draft: &mut Draft, nodes: &[usize]) {
+        let Draft { cage, is_wide, .. } = draft;
+        let is_kept = |element: usize| {
+            let of: &[u32] = &cage.elements[element];
+            let corners = [0, 1, 2, 3].map(|at| cage.nodes[of[at] as usize]);
+            let has_inside = || self.passes(corners) || self.lattice.contains(0.25 * corners.iter().sum::<DVec3>());
+            !is_wide[element] || of.iter().all(|&node| nodes.binary_search(&(node as usize)).is_err()) && has_inside()
+        };
+        let kept: Vec<bool> = (0..is_wide.len()).into_par_iter().map(is_kept).collect();
+        let elements = cage.elements.iter().zip(&kept).filter(|(_, kept)| **kept);
+        cage.elements = elements.map(|(element, _)| element).collect::<IndexLists>();
+        let mut kept = kept.into_iter();
+        is_wide.retain(|_| kept.next() == Some(true));
+    }
+
+    /// A place, if it is inside or near to the surface, or one that is on the way there; and whether it is another.
+    fn goal(&self, at: DVec3) -> Option<(DVec3, bool)> {
+        if self.lattice.contains(at) {
+            return Some((at, false));
+        }
+        let surface = self.nearest(at, 4.0 * self.lattice.side)?;
+        let far = at.distance(surface) / self.lattice.side;
+        Some(if far > NEAR { (surface + (at - surface) * (NEAR / far), true) } else { (at, false) })
+    }
+
+    /// Draws nodes to the surface, one after the other. Returns those that stay far from it.
+    fn draw(&self, draft: &mut Draft) -> Vec<usize> {
+        let Draft { cage, is_wide, .. } = draft;
+        let nodes = &mut cage.nodes;
+        let mut elements_of = vec![Vec::new(); nodes.len()];
+        let mut may_move = vec![false; nodes.len()];
+        for ((number, element), is_wide) in (0..).zip(cage.elements.iter()).zip(is_wide) {
+            for &node in element {
+                elements_of[node as usize].push(number);
+                may_move[node as usize] |= *is_wide;
+            }
+        }
+        let goal = |node: usize| Some((node, self.goal(nodes[node]).filter(|goal| goal.1)?.0));
+        let may_move = (0..nodes.len()).into_par_iter().filter(|&node| may_move[node]);
+        let mut goals: Vec<_> = may_move.filter_map(goal).collect();
+        let side = self.lattice.side;
+        let mut moves = |node: usize, to: &dyn Fn(DVec3) -> DVec3| {
+            let from = nodes[node];
+            nodes[node] = to(from);
+            let is_sound = elements_of[node].iter().all(|&element| {
+                let element: &[u32] = &cage.elements[element];
+                is_sound([0, 1, 2, 3].map(|at| nodes[element[at] as usize]), side)
+            });
+            if !is_sound {
+                nodes[node] = from;
+            }
+            is_sound
+        };
+        for sweep in 0..SWEEPS {
+            goals.retain(|&(node, goal)| {
+                let beside =
+                    BESIDE.into_iter().flat_map(|far| directions(None).map(move |way| goal + far * side * way));
+                // Beside the goal there may be more room.
+                let is_there = moves(node, &|_| goal)
+                    || sweep == SWEEPS - 2
+                        && beside.filter_map(|at| self.goal(at)).any(|(near, _)| moves(node, &|_| near));
+                if !is_there {
+                    PARTS.into_iter().any(|part| moves(node, &|from| from.lerp(goal, part)));
+                }
+                !is_there
+            });
+        }
+        goals.into_iter().map(|(node, _)| node).collect()
+    }
+}
+
+/// Whether a tetrahedron has the right side out, and neither small angles nor a small size.
+fn is_sound(corners: [DVec3; 4], side: f64) -> bool {
+    let [a, b, c, d] = corners;
+    let mean = 0.25 * (a + b + c + d);
+    let spread = 0.25 * corners.iter().map(|corner| corner.distance_squared(mean)).sum::<f64>();
+    let cosines = cosines(corners);
+    (b - a).cross(c - a).dot(d - a) > 0.0
+        && spread > SMALL * side * side
+        && cosines.iter().all(|cosine| (COSINES[0]..COSINES[1]).contains(cosine))
+}
+
+/// The cosines of the dihedral angles of a tetrahedron.
+pub(super) fn cosines([a, b, c, d]: [DVec3; 4]) -> [f64; 6] {
+    // All look in, or all out.
+    let normals = [(c - b).cross(d - b), (d - a).cross(c - a), (b - a).cross(d - a), (c - a).cross(b - a)];
+    let normals = normals.map(DVec3::normalize);
+    let pairs = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+    pairs.map(|[one, other]| -normals[one].dot(normals[other]))
+}
