@@ -21,16 +21,6 @@ Examples:
   localshape check scenes/*.toml --quiet && echo all right
   localshape check hare.ply";
 
-/// Why a scene cannot be printed in its size.
-#[cfg(feature = "render")]
-fn too_small(scene: &Scene) -> Option<String> {
-    super::still::too_small(scene, &(0..scene.runs.len()).collect::<Vec<_>>())
-}
-#[cfg(not(feature = "render"))]
-fn too_small(_: &Scene) -> Option<String> {
-    None
-}
-
 /// Check scenes and print what they contain, or every mistake in them. A mesh file is checked alone: its size, its flaws, and
 /// the elements that would fill it
 #[derive(Args, Debug)]
@@ -63,31 +53,12 @@ impl Check {
                 meshes.push(document);
                 continue;
             }
-            let loaded = self.scenes.load(path).map(|scene| self.resized(scene));
-            let refused = loaded.as_ref().ok().and_then(too_small);
-            match loaded {
-                Ok(_) if refused.is_some() => {
-                    failed = Some(worse(failed, Status::Usage));
-                    let message = refused.unwrap_or_default();
-                    if self.printing.json {
-                        documents.push(json!({ "file": file, "ok": false, "error": message, "mistakes": [] }));
-                    } else {
-                        complain(&message);
-                    }
-                }
-                Ok(scene) if self.printing.quiet && !self.printing.json => {
-                    for message in scene.too_large_steps() {
-                        failed = failed.or(Some(Status::Difference));
-                        complain(&format!("{file}: {message}"));
-                    }
-                }
+            match self.scenes.load(path).map(|scene| self.resized(scene)) {
+                Ok(_) if self.printing.quiet && !self.printing.json => {}
                 Ok(mut scene) => {
-                    if !scene.too_large_steps().is_empty() {
-                        failed = failed.or(Some(Status::Difference));
-                    }
-                    scene.warnings.extend(cut(&scene));
+                    scene.warnings.extend(of_pictures(&scene));
+                    let no_room = no_room(&scene);
                     if self.printing.json {
-                        let no_room = no_room(&scene);
                         let (scene, warnings) = (scene.summary(), &scene.warnings);
                         documents.push(
                             json!({ "file": file, "ok": true, "scene": scene, "warnings": warnings, "no_room": no_room }),
@@ -96,7 +67,6 @@ impl Check {
                     }
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
                     warn(path, &scene);
-                    let no_room = no_room(&scene);
                     if !no_room.is_empty() {
                         let [width, height] = scene.view.size;
                         note(&format!("{file}: not everything has room in {width}×{height}: {}", no_room.join("; ")));
@@ -160,29 +130,36 @@ impl Check {
     }
 }
 
-/// A warning if a body leaves its panel at the start, before a camera that stands still.
+/// Warnings of pictures: a body that leaves its panel at the start, before a camera that stands still, and type that is too
+/// small to be printed.
 #[cfg(feature = "render")]
-fn cut(scene: &Scene) -> Option<Mistake> {
-    if scene.view.camera.follow {
-        return None;
-    }
+fn of_pictures(scene: &Scene) -> Vec<Mistake> {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let mut runner = Runner::new(scene, &runs).with_diagnostics(&scene.frame_diagnostics());
-    let picture = crate::picture::Composer::new(scene, &Default::default()).compose(&runner.frame(0));
-    picture.panels.iter().any(|panel| panel.is_cut).then(|| Mistake {
+    let is_cut = || {
+        let mut runner = Runner::new(scene, &runs).with_diagnostics(&scene.frame_diagnostics());
+        let picture = crate::picture::Composer::new(scene, &Default::default()).compose(&runner.frame(0));
+        picture.panels.iter().any(|panel| panel.is_cut)
+    };
+    let cut = (!scene.view.camera.follow && is_cut()).then(|| {
+        let help = "move the camera back, or let it follow: leave out `target` and `distance`";
+        ("view.camera", ["the body leaves its panel at the start", help].map(str::to_owned))
+    });
+    let small = super::still::too_small(scene, &runs).map(|words| ("view.size", words));
+    let warning = |(place, [message, help]): (&str, [String; 2])| Mistake {
         line: 0,
         column: 0,
-        place: "view.camera".to_owned(),
-        message: "the body leaves its panel at the start".to_owned(),
-        help: Some("move the camera back, or let it follow: leave out `target` and `distance`".to_owned()),
+        place: place.to_owned(),
+        message,
+        help: Some(help),
         excerpt: String::new(),
         marked: 0..0,
-    })
+    };
+    cut.into_iter().chain(small).map(warning).collect()
 }
 
 #[cfg(not(feature = "render"))]
-fn cut(_: &Scene) -> Option<Mistake> {
-    None
+fn of_pictures(_: &Scene) -> Vec<Mistake> {
+    Vec::new()
 }
 
 /// The parts that have no room in the pictures of a scene.

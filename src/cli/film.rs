@@ -3,6 +3,7 @@
 use super::failure::{Failure, Status, with_causes};
 use crate::animation::{AnimationError, Written};
 use crate::golden::PictureError;
+use crate::output::{folder_of, is_folder};
 use indicatif::DecimalBytes;
 use std::ffi::OsString;
 use std::fs::File;
@@ -29,10 +30,11 @@ pub(super) fn comment(words: &[OsString], scene: &str) -> String {
     format!("{MARK}{version}; {scene}command: {}", command.join(" "))
 }
 
-/// Refuses to replace files that this program did not make.
+/// Refuses to replace files that this program did not make, and paths below a file.
 pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     /// Comments stand near the beginning; in films they follow the tables of all pictures.
     const BEGINNING: u64 = 1 << 20;
+    is_folder(folder_of(path))?;
     let Ok(found) = path.metadata() else { return Ok(()) };
     let name = path.display();
     if !found.is_file() {

@@ -1,6 +1,6 @@
 //! The command line: one file per command, texts and exit statuses, no physics.
 //!
-//! It is part of the library so that tests and other programs can call it. Exit statuses: 0 done; 1 a check found a
+//! It is part of the library so that tests and other programs can call it. Exit statuses: 0 done; 1 a comparison found a
 //! difference; 2 wrong usage or a wrong scene; 3 no usable graphics adapter; 4 reading or writing failed;
 //! 130 interrupted.
 
@@ -50,7 +50,7 @@ use std::process::ExitCode;
 const STATUSES: &str = "\
 Exit status:
     0  done, even if a run diverges, which is recorded
-    1  a check found a difference
+    1  a comparison found a difference
     2  wrong usage, or mistakes in a scene file
     3  no usable graphics adapter
     4  reading or writing failed

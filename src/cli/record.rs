@@ -12,7 +12,7 @@ use crate::output::{
 };
 use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
-use crate::runner::{Frames, Meetings, Next, Progress, Runner, Stored};
+use crate::runner::{Frames, Next, Progress, Runner, Stored};
 use crate::scene::{Run, Scene};
 use crate::sim::{self, Frame, State};
 use rayon::ThreadPool;
@@ -289,6 +289,7 @@ impl<'a> Recording<'a> {
                 let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&path))?;
                 return Ok(Simulation { frames, ahead: false, notes: false, is_stored: true });
             }
+            runner = runner.watching();
             if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
             }
@@ -338,11 +339,9 @@ impl<'a> Recording<'a> {
         let can_resume = !simulation.is_stored
             && !self.folder.is_shard()
             && (results.pictures.is_none() || self.summary.frames.size.is_some());
-        // A continued command has told of bodies that overlap at the checkpoint.
-        let begun = simulation.frames.taken() > 0;
-        let present = self.runs.iter().zip(simulation.frames.states());
-        let present = present.map(|(&run, state)| if begun { state } else { &self.scene.runs[run].initial });
-        let mut meetings = Meetings::new(self.scene, &self.runs, present.map(|state| &state.position[..]));
+        let tell_meetings = |frames: &mut Frames<'_>| {
+            frames.meetings().iter().filter(|_| !printing.quiet).for_each(|message| bar.suspend(|| note(message)));
+        };
         let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {
@@ -353,6 +352,7 @@ impl<'a> Recording<'a> {
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
             bar.set_position(frames.steps()[0]);
+            tell_meetings(frames);
             let next = next.map_err(|error| match frames.unreadable() {
                 Some(file) => OutputError::reading(file)(error),
                 None => OutputError::writing(self.folder.path())(error),
@@ -365,9 +365,6 @@ impl<'a> Recording<'a> {
                 Next::Working | Next::TimeSeries(_) => {}
                 Next::Frame(frame) => {
                     self.summary.frames.recorded += 1;
-                    for message in meetings.look(&frame).iter().filter(|_| !printing.quiet) {
-                        bar.suspend(|| note(message));
-                    }
                     if !*is_stored {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
@@ -388,6 +385,7 @@ impl<'a> Recording<'a> {
         }
         if can_resume && interrupt::requested() {
             results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary)?;
+            tell_meetings(&mut simulation.frames);
         }
         let frames = &mut simulation.frames;
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {

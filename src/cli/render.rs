@@ -10,7 +10,7 @@ use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size}
 use super::record::{self, AdapterOf, Begin};
 use super::scenes::{Wish, nearest};
 use super::still::{
-    Format as FileFormat, Still, one_frame, replaceable as replaceable_still, size_text, source_of, too_small,
+    Format as FileFormat, Still, check_print, one_frame, replaceable as replaceable_still, size_text, source_of,
 };
 use crate::animation::Format;
 use crate::gpu::adapter_name;
@@ -161,7 +161,7 @@ impl Render {
 
     /// Checks that a scene can be drawn.
     fn check(&self, scene: &Scene) -> Result<(), Failure> {
-        too_small(scene, &self.options.runs(scene)?).map_or(Ok(()), |message| Err(Failure::usage(message)))
+        check_print(scene, &self.options.runs(scene)?)
     }
 
     /// Draws one frame into a file of its own.

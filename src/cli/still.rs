@@ -107,8 +107,18 @@ pub(super) fn replaceable(path: &Path, format: Format) -> Result<(), Failure> {
 
 /// Refuses type that is too small to be printed.
 pub(super) fn check_type(print: Option<&Print>, picture: &Picture, file: &str) -> Result<(), Failure> {
-    match print.and_then(|print| print.too_small(f64::from(smallest_type(picture)), file)) {
-        Some(message) => Err(Failure::usage(message)),
+    refuse(print, print.and_then(|print| print.too_small(f64::from(smallest_type(picture)))), file)
+}
+
+/// Refuses some runs of a scene that cannot be printed.
+pub(super) fn check_print(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
+    refuse(scene.view.print.as_ref(), too_small(scene, runs), &source_of(scene))
+}
+
+/// Fails if type of a size in print is too small. `file` has that size.
+fn refuse(print: Option<&Print>, small: Option<[String; 2]>, file: &str) -> Result<(), Failure> {
+    match print.zip(small) {
+        Some((print, words)) => Err(Failure::usage(format!("{}: {}", print.place(file), words.join(": ")))),
         None => Ok(()),
     }
 }
@@ -118,13 +128,13 @@ fn smallest_type(picture: &Picture) -> f32 {
     picture.words().map(|run| run.size).fold(f32::INFINITY, f32::min)
 }
 
-/// Why some runs of a scene cannot be printed, judged by the first frame before anything is simulated.
-pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
+/// Why some runs of a scene cannot be printed, judged by the first frame before anything is simulated, and the remedy.
+pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<[String; 2]> {
     let print = scene.view.print.as_ref()?;
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
     let first = Composer::new(scene, &History::default()).compose(&runner.frame(0));
     let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first).into());
-    print.too_small(smallest, &source_of(scene))
+    print.too_small(smallest)
 }
 
 /// The file of a scene, for messages.

@@ -66,20 +66,24 @@ impl Palette {
 }
 
 impl Print {
-    /// Why type of a size (px) is not printed; `None` if it is large enough. `file` has the size.
-    pub(crate) fn too_small(&self, pixels: f64, file: &str) -> Option<String> {
+    /// Why type of a size (px) is not printed, and the remedy; `None` if it is large enough.
+    pub(crate) fn too_small(&self, pixels: f64) -> Option<[String; 2]> {
         let (points, [width, height]) = (self.points(pixels), self.mm);
-        let place = match self.at {
+        (points < LEAST_POINTS - 1e-6).then(|| {
+            let message = format!(
+                "at {width} × {height} mm the smallest type would be {} pt; expected at least {LEAST_POINTS} pt",
+                rounded(points, 2)
+            );
+            [message, "make `size` larger, or type with `text_scale`".to_owned()]
+        })
+    }
+
+    /// Where the size is given, for messages; `file` has it.
+    pub(crate) fn place(&self, file: &str) -> String {
+        match self.at {
             (0, _) => file.to_owned(),
             (line, column) => format!("{file}:{line}:{column}"),
-        };
-        (points < LEAST_POINTS - 1e-6).then(|| {
-            format!(
-                "{place}: at {width} × {height} mm the smallest type would be {} pt; expected at least \
-                 {LEAST_POINTS} pt: make `size` larger, or type with `text_scale`",
-                rounded(points, 2)
-            )
-        })
+        }
     }
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Progress {
     history: History,
     /// The results of [`Frames::last_fit`] for each run, with states as bytes.
     last_fits: Vec<Option<StoredFit>>,
+    /// Whether the bodies of each run need not be watched any more.
+    met: Vec<bool>,
     /// The number of frames returned.
     pub(crate) taken: usize,
     /// The end of each waiting state in its file, if states wait until the end of the simulation.
@@ -109,15 +111,17 @@ impl<'a> Frames<'a> {
         };
         let states = runner.runs.iter_mut().map(|running| {
             running.world.settle();
+            running.look(runner.scene);
             running.world.state().to_bytes()
         });
         let states = states.collect();
         let series = runner.runs.iter().map(|running| running.series.clone()).collect();
         let history = History { end: 0.0, series };
+        let met = runner.runs.iter().map(|running| running.watch.is_none()).collect();
         let (taken, runs) = (*taken, 0..runner.runs.len());
         let last_fit = |place| Some(self.last_fit(place)?.map(|(state, wider)| (state.to_bytes(), wider)));
         let last_fits = runs.map(last_fit).collect();
-        Ok(Some(Progress { states, history, last_fits, taken, waiting }))
+        Ok(Some(Progress { states, history, last_fits, met, taken, waiting }))
     }
 
     /// Continues from the progress of another process with the same runs and frames, before the first call of
@@ -127,7 +131,7 @@ impl<'a> Frames<'a> {
     /// The progress belongs to other runs or frames.
     pub(crate) fn resume(&mut self, progress: Progress) -> io::Result<()> {
         let Self { runner, frames, taken, before, source, .. } = self;
-        let Progress { states, history, last_fits, taken: returned, waiting } = progress;
+        let Progress { states, history, last_fits, met, taken: returned, waiting } = progress;
         let runs = runner.runs.len();
         let reached = match (source, waiting) {
             (Source::Simulated, None) => Some(returned),
@@ -141,15 +145,17 @@ impl<'a> Frames<'a> {
         let end = runner.scene.last_frame();
         // The next frame and the next moment of a time series must lie ahead.
         let next = runner.scene.moment(frames.get(reached).copied().unwrap_or(end));
-        let fit = [states.len(), history.series.len(), last_fits.len()] == [runs; 3];
+        let fit = [states.len(), history.series.len(), last_fits.len(), met.len()] == [runs; 4];
         if !fit || !history.series.iter().zip(&runner.runs).all(|(series, running)| series.fits(&running.series)) {
             return Err(io::ErrorKind::InvalidData.into());
         }
-        let found = runner.runs.iter_mut().zip(states).zip(history.series).zip(last_fits);
-        for (((running, state), series), last_fit) in found {
+        let found = runner.runs.iter_mut().zip(states).zip(history.series).zip(last_fits).zip(met);
+        for ((((running, state), series), last_fit), met) in found {
             let state = State::from_bytes(&state).filter(|state| running.world.takes(state));
             running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
             running.series = series;
+            running.watch = running.watch.take().filter(|_| !met);
+            running.watch.iter_mut().for_each(|watch| watch.goes_on(&running.world));
             if let Some(found) = last_fit {
                 let read = |(bytes, wider): (Vec<u8>, f64)| {
                     let state = State::from_bytes(&bytes).filter(|state| running.world.takes(state));
@@ -280,6 +286,11 @@ impl<'a> Frames<'a> {
     /// The time series so far, unless they were returned.
     pub(crate) fn take_history(&mut self) -> History {
         self.runner.take_history()
+    }
+
+    /// The messages about bodies that have gone through each other, each once.
+    pub(crate) fn meetings(&mut self) -> Vec<String> {
+        self.runner.runs.iter_mut().filter_map(|running| running.meeting.take()).collect()
     }
 
     /// The file with states that could not be read, after an error.

@@ -304,6 +304,7 @@ mod tests {
         let divergence = short.divergence.expect("such long steps blow up");
         let last = (divergence.step - 1) as f64 * scene.runs[1].step;
         assert_eq!(short.times.last(), Some(&last));
+        assert!(short.times.windows(2).all(|two| two[0] < two[1]), "the last state is noted once");
         assert!(last < divergence.time && divergence.time < 2.0);
         assert!(short.diagnostics.iter().all(|diagnostics| diagnostics.kinetic.is_finite()));
     }

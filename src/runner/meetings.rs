@@ -1,46 +1,108 @@
-//! Bodies that go through each other: nothing keeps them apart.
+//! From which step on bodies go through each other: nothing keeps them apart.
 
 use crate::reading::words::short;
 use crate::scene::Scene;
-use crate::sim::geometry::overlaps;
-use crate::sim::{Frame, Status};
-use glam::DVec3;
+use crate::sim::geometry::{apart, overlaps};
+use crate::sim::{Moment, State, Status, World};
 use std::collections::BTreeSet;
 
-/// Looks at frames for bodies that go through each other. A scene with one body takes no time.
-pub(crate) struct Meetings<'a> {
-    scene: &'a Scene,
-    /// Each run with the pairs of its bodies that overlapped before; `None` once a pair was found.
-    runs: Vec<(usize, Option<BTreeSet<[usize; 2]>>)>,
+/// Watches a run until two of its bodies overlap that were apart at the start.
+///
+/// It looks at steps, however they are divided into calls. Until the next look no node moves, at the present speeds, farther relative
+/// to another than half the way between bodies, or a quarter of an element. Where a look finds an overlap, the steps since the look
+/// before are taken again, one by one.
+pub(super) struct Watch {
+    /// The pairs that overlap at the start, which the check of the scene tells.
+    known: BTreeSet<[usize; 2]>,
+    /// The least of the mean lengths of edges of each body (m).
+    side: f64,
+    /// The state of the last look.
+    last: State,
+    /// The step of the next look.
+    next: u64,
 }
 
-impl<'a> Meetings<'a> {
-    /// Begins before the first frame of runs at these positions of their nodes (m). Bodies that overlap then were told of
-    /// before.
-    pub(crate) fn new<'p>(scene: &'a Scene, runs: &[usize], positions: impl Iterator<Item = &'p [DVec3]>) -> Self {
-        let before = |(&run, position): (&usize, &'p [DVec3])| {
-            // What recorded bodies do is not known here.
-            let simulated = scene.runs[run].recording.is_none();
-            (run, simulated.then(|| overlaps(&scene.runs[run].bodies, position, |_| true).collect()))
-        };
-        Self { scene, runs: runs.iter().zip(positions).map(before).collect() }
+impl Watch {
+    /// The most steps between two looks: a look then costs little beside them.
+    const MOST: f64 = 32.0;
+
+    /// Watches a run from the start of its world; `None` if no two bodies of it can be told of.
+    pub(super) fn new(scene: &Scene, run: usize, world: &World) -> Option<Self> {
+        let run = &scene.runs[run];
+        let bodies = run.of.len();
+        // What recorded bodies do is not known here.
+        if bodies < 2 || run.recording.is_some() {
+            return None;
+        }
+        let known: BTreeSet<_> = overlaps(&run.bodies, &run.initial.position, |_| true).collect();
+        let side = run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min);
+        let is_left = known.len() < bodies * (bodies - 1) / 2;
+        is_left.then(|| Self { known, side, last: world.state().clone(), next: 1 })
     }
 
-    /// The message for each run in which two bodies overlap in a frame, and in none before: the first pair in each run.
-    pub(crate) fn look(&mut self, frame: &Frame) -> Vec<String> {
-        let mut messages = Vec::new();
-        for ((number, before), shown) in self.runs.iter_mut().zip(&frame.runs) {
-            let (run, snapshot) = (&self.scene.runs[*number], &shown.snapshot);
-            let Some(known) = before.as_ref().filter(|_| snapshot.status == Status::Ok) else { continue };
-            let first = overlaps(&run.bodies, &snapshot.position, |pair| !known.contains(&pair)).next();
-            if let Some(pair) = first {
-                let [one, other] = pair.map(|body| &self.scene.bodies[run.of[body]].name);
-                let (time, name) = (short(snapshot.time), &run.name);
-                let message = format!("“{one}” and “{other}” go through each other from {time} s on in “{name}”");
-                messages.push(format!("{message}: bodies do not collide"));
-                *before = None;
+    /// Goes on from the state of a world, which was looked at before.
+    pub(super) fn goes_on(&mut self, world: &World) {
+        self.last.clone_from(world.state());
+        self.next = self.last.steps + 1;
+    }
+
+    /// Advances the world of a run as [`World::advance_towards`] does. Returns whether the moment has been reached, and the message
+    /// about the first two bodies that overlap, after which there is nothing to watch.
+    pub(super) fn advance(
+        &mut self,
+        scene: &Scene,
+        run: usize,
+        world: &mut World,
+        (moment, mut left): (Moment, u64),
+    ) -> (bool, Option<String>) {
+        loop {
+            let before = world.steps();
+            let is_there = world.advance_towards(moment, left.min(self.next - before));
+            let has_diverged = world.status() != Status::Ok;
+            if world.steps() >= self.next || has_diverged {
+                let found = self.look(scene, run, world);
+                if found.is_some() || has_diverged {
+                    return (is_there, found);
+                }
+            }
+            left = left.saturating_sub(world.steps() - before);
+            if is_there || left == 0 {
+                return (is_there, None);
             }
         }
-        messages
+    }
+
+    /// The message about the first two bodies that overlap in a step since the last look. The world stays as it is.
+    pub(super) fn look(&mut self, scene: &Scene, run: usize, world: &mut World) -> Option<String> {
+        world.settle();
+        let Self { known, side, last, next } = self;
+        let (of, is_new) = (&scene.runs[run], |pair: [usize; 2]| !known.contains(&pair));
+        let State { position, velocity, .. } = world.state();
+        let gap = apart(&of.bodies, position, is_new);
+        if gap > 0.0 || overlaps(&of.bodies, position, is_new).next().is_none() {
+            let mean = velocity.iter().sum::<glam::DVec3>() / velocity.len() as f64;
+            let fastest = velocity.iter().map(|speed| speed.distance(mean)).fold(0.0, f64::max);
+            let steps = (gap / 2.0).max(*side / 4.0) / (2.0 * fastest * of.step);
+            last.clone_from(world.state());
+            *next = last.steps + steps.clamp(1.0, Self::MOST) as u64;
+            return None;
+        }
+        let present = world.state().clone();
+        world.set_state(last.clone());
+        let pair = loop {
+            world.advance(1);
+            if let Some(pair) = overlaps(&of.bodies, &world.state().position, is_new).next() {
+                break pair;
+            }
+        };
+        let [one, other] = pair.map(|body| &scene.bodies[of.of[body]].name);
+        let (time, name) = (short(world.steps() as f64 * of.step), &of.name);
+        world.set_state(present);
+        let message = format!("“{one}” and “{other}” go through each other from {time} s on in “{name}”");
+        Some(format!("{message}: bodies do not collide"))
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/meetings.rs"]
+mod tests;

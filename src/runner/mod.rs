@@ -17,7 +17,7 @@ use crate::sim::{
 pub(crate) use frames::{Frames, Next, Progress};
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};
-pub(crate) use meetings::Meetings;
+use meetings::Watch;
 use rayon::prelude::*;
 use std::io;
 use std::path::Path;
@@ -56,6 +56,10 @@ struct Running {
     last_fit: OnceLock<Option<Fitting>>,
     /// The search for that state, while it runs.
     search: Option<Search>,
+    /// Watches its bodies, until two of them go through each other.
+    watch: Option<Watch>,
+    /// The message about these, until it is taken.
+    meeting: Option<String>,
 }
 
 impl<'a> Runner<'a> {
@@ -91,6 +95,8 @@ impl<'a> Runner<'a> {
                 recording: None,
                 last_fit: OnceLock::new(),
                 search: None,
+                watch: None,
+                meeting: None,
             };
             match &scene.runs[run].recording {
                 Some(recording) => running.showing(recording),
@@ -133,6 +139,12 @@ impl<'a> Runner<'a> {
             running.world.show(None);
             running.is_drawn = false;
         }
+        self
+    }
+
+    /// Watches bodies that go through each other, which [`Frames::meetings`] tells.
+    pub(crate) fn watching(mut self) -> Self {
+        self.runs.iter_mut().for_each(|running| running.watch = Watch::new(self.scene, running.run, &running.world));
         self
     }
 
@@ -294,7 +306,7 @@ impl Running {
                 break;
             }
             let before = self.world.steps();
-            let is_there = self.world.advance_towards(note, left);
+            let is_there = self.walk(scene, note, left);
             if let Status::Diverged(divergence) = self.world.status() {
                 // The last finite state is that before the rejected step.
                 let (last, noted) = (divergence.step - 1, self.series.times.len());
@@ -309,7 +321,31 @@ impl Running {
                 return false;
             }
         }
-        self.world.advance_towards(moment, left)
+        self.walk(scene, moment, left)
+    }
+
+    /// Advances as [`World::advance_towards`] does, and watches the bodies.
+    fn walk(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
+        let Self { run, world, watch: Some(watch), .. } = self else {
+            return self.world.advance_towards(moment, most_steps);
+        };
+        let (is_there, found) = watch.advance(scene, *run, world, (moment, most_steps));
+        self.meet(found);
+        is_there
+    }
+
+    /// Looks at the bodies now, so that a copy of the present state needs no earlier one.
+    fn look(&mut self, scene: &Scene) {
+        let Self { run, world, watch, .. } = self;
+        let found = watch.as_mut().and_then(|watch| watch.look(scene, *run, world));
+        self.meet(found);
+    }
+
+    /// Keeps the message about two bodies, and watches no more.
+    fn meet(&mut self, found: Option<String>) {
+        if found.is_some() || self.world.status() != Status::Ok {
+            (self.meeting, self.watch) = (found, None);
+        }
     }
 
     /// Records the present state after a step.

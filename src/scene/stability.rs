@@ -17,10 +17,9 @@ impl Scene {
         (all, limiting.map(|body| self.bodies[run.of[body]].name.as_str()))
     }
 
-    /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs far
-    /// below, nearly all, need no exact eigenvalue. Explicit Euler without damping has another message
-    /// ([`Self::never_stable`]).
-    pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
+    /// The message and remedy for a run whose step is more than 0.9 of the largest stable one. Runs far below, nearly all, need no
+    /// exact eigenvalue. Explicit Euler without damping has another message ([`Self::never_stable`]).
+    pub(super) fn near_limit(&self, number: usize) -> Option<[String; 2]> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
         let Run { bodies, models, grips, integrator, step, .. } = run;
@@ -41,7 +40,7 @@ impl Scene {
             "the time step of {name} is {step} s, {percent} % of the largest that is stable at rest, {limit} s{body}{outcome}"
         );
         let half = short(Stability::SHARE * largest);
-        Some((share, [message, format!("use {half} s or less, or `step = \"auto\"`")]))
+        Some([message, format!("use {half} s or less, or `step = \"auto\"`")])
     }
 
     /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
@@ -66,12 +65,6 @@ impl Scene {
         let has_limit = run.tolerance.is_none() && largest > 0.0 && largest.is_finite();
         let share = run.step / largest;
         (is_elastic && has_limit && share < 1.0 && run.is_undamped()).then_some(GAIN * share * share)
-    }
-
-    /// The message for each run whose step is larger than the largest stable one.
-    pub(crate) fn too_large_steps(&self) -> Vec<String> {
-        let near = (0..self.runs.len()).filter_map(|run| self.near_limit(run));
-        near.filter(|(share, _)| *share > 1.0).map(|(_, words)| words.join(": ")).collect()
     }
 }
 

@@ -76,31 +76,5 @@ impl From<NamedStep> for String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::NamedStep::{self, Auto, Divided, Times};
-
-    #[test]
-    fn fractions_are_read_in_either_order_and_with_any_spaces() {
-        for (text, expected) in [
-            ("T/50", Divided(50.0)),
-            (" T / 12.5 ", Divided(12.5)),
-            ("0.02 T", Times(0.02)),
-            ("2e-2T", Times(0.02)),
-            ("T", Times(1.0)),
-            ("auto", Auto),
-        ] {
-            assert_eq!(text.parse::<NamedStep>(), Ok(expected), "{text}");
-            assert_eq!(expected.to_string().parse::<NamedStep>(), Ok(expected), "{expected}");
-        }
-    }
-
-    #[test]
-    fn anything_else_is_refused() {
-        for text in [
-            "", "T/", "T/0", "T/-3", "-1 T", "0 T", "t/50", "50", "T*2", "TT", "inf T", "T/nan", "T/50 s", "Auto",
-            "auto/2",
-        ] {
-            assert!(text.parse::<NamedStep>().is_err(), "{text}");
-        }
-    }
-}
+#[path = "../../tests/inside/step.rs"]
+mod tests;

@@ -148,6 +148,15 @@ fn a_file_in_the_way() {
             ran.bad(4, &["error: taken is a file, not a folder; choose another folder with -o\n"]);
         }
     }
+    let commands = [
+        "render small.toml --frames 3 -o taken/one.svg",
+        "render small.toml --animate taken/film.gif",
+        "figure fig1 -o taken/fig1.png",
+        "animate out -o taken/film.gif",
+    ];
+    for command in commands.iter().take(if cfg!(feature = "render") { 4 } else { 0 }) {
+        place.run(command).bad(4, &["error: taken is a file, not a folder; choose another folder with -o\n"]);
+    }
     assert_eq!(place.read("taken"), "a file");
 }
 

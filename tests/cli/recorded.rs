@@ -3,6 +3,8 @@
 use crate::parts::files;
 use crate::render::place_to_draw;
 use crate::support::{Place, lasting};
+use localshape::runner::Runner;
+use localshape::scene::{Limits, Scene};
 
 /// A disc in the plane that falls on a floor, with a camera at rest.
 const PLANE: &str = r#"
@@ -137,6 +139,39 @@ fn a_run_that_diverged_has_no_states_after_that() {
     let told = place.run("check played.toml").good();
     let words = format!("recorded, {} states", before + 1);
     assert!(told.out.contains(&words), "{words}: {}", told.out);
+}
+
+/// Of two bodies, the second one diverges. Where both are shown as one body, the divergence is in an element of that.
+#[test]
+fn a_divergence_in_another_body_is_played_back_as_well() {
+    let place = Place::new();
+    let two = r#"
+gravity = [0, -9.8]
+time = { duration = 1, frames_per_second = 20, integrator = "explicit-euler", step = 0.005 }
+[[body]]
+name = "soft"
+fan = { sides = 6, radius = 0.1 }
+lowest = 0
+[[body]]
+name = "stiff"
+fan = { sides = 6, radius = 0.1 }
+lowest = 1
+[[obstacle]]
+kind = "floor"
+[[run]]
+name = "Both"
+models.soft = { kind = "shape-based", stiffness = 1e3, damping_ratio = 0.5 }
+models.stiff = { kind = "shape-based", stiffness = 1e6 }
+"#;
+    place.write("two.toml", two);
+    place.run("simulate two.toml --states -o own");
+    let run = place.json("own/run.json")["runs"][0].clone();
+    assert_eq!((&run["status"], &run["body"]), (&"diverged".into(), &"stiff".into()), "{run}");
+    place.write("played.toml", &recorded(PLANE, "\"own/states.npz\"").replace("duration = 0.1", "duration = 1"));
+    let scene = Scene::load(&place.path("played.toml"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let frame = Runner::new(&scene, &[0]).frame(scene.last_frame());
+    let shown = frame.runs[0].last_fit.as_ref().expect("the last state that fits");
+    assert!(shown.times_wider > 1.0 && shown.snapshot.position.len() == 14, "{shown:?}");
 }
 
 /// After its last moment a recording shows its last state, and says so.

@@ -76,7 +76,7 @@ fn every_mistake_is_said_where_it_is() {
         ),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\nstrips = ['energy']",
-            "4:1 `sheet.strips` is gone write `charts = [\"DIAGNOSTIC\"]`, such as `charts = [\"energy\"]`",
+            "4:1 unknown key `strips` in `sheet` known here: ",
         ),
         ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\ncharts = ['shape_eror']", "4:11 did you mean \"shape_error\"?"),
         (

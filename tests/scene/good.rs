@@ -325,6 +325,19 @@ fn a_summary_says_what_a_scene_holds() {
     assert_eq!(json["gravity"], serde_json::json!([0.0, -9.8]));
 }
 
+/// A scene that is shorter than the time between two frames has a whole number of steps all the same.
+#[test]
+fn automatic_steps_of_a_scene_shorter_than_a_frame() {
+    let scene = |stiffness: &str| {
+        let text = WORLD.replace("duration = 1", "duration = 1e-3\nstep = 'auto'").replace("1e4", stiffness);
+        good(&format!("{text}[body]\nlattice = {{ cells = [1, 1, 1], side = 0.1 }}\n")).runs[0].step
+    };
+    assert_eq!(scene("1"), 1e-3);
+    let step = scene("1e7");
+    let steps = 1e-3 / step;
+    assert!(steps > 2.5 && (steps - steps.round()).abs() < 1e-9, "{step}");
+}
+
 /// `step = "auto"` of a model that is stable with any step takes twenty steps in a frame of a sixtieth of a second.
 #[test]
 fn a_model_that_steps_itself_takes_a_step_that_does_not_depend_on_its_stiffness() {

@@ -189,7 +189,7 @@ fn view(to: &str, expected: &str) {
 
 #[test]
 fn mistakes_of_colours() {
-    view("background = 'transparent'", "20:14 `view.background = \"transparent\"` is gone write a colour");
+    view("background = 'transparent'", "20:14 is \"transparent\", which is transparent; expected an opaque colour");
     view("background = '#ffffff00'", "20:14 , which is transparent; expected an opaque colour");
     view("background = 7", "20:14 is the whole number 7; expected a string The background");
     view("background = 'stelblue'", "20:14 `view.background` is \"stelblue\"; expected digits such as \"#93a5ba\"");
@@ -197,7 +197,7 @@ fn mistakes_of_colours() {
     view("background = '93a5ba'", "20:14 write \"#93a5ba\"");
     view("background = '#93a5b'", "20:14 expected three or six digits, such as \"#93a5ba\"");
     view("background = ''", "20:14 `view.background` is \"\"; expected digits");
-    view("colours = { body = 'red' }", "20:1 `view.colours` is gone");
+    view("colours = { body = 'red' }", "20:1 unknown key `colours` in `view` did you mean `colour`?");
     view("color = 'red'", "20:1 unknown key `color` in `view` did you mean `colour`?");
 }
 

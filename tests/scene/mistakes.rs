@@ -436,8 +436,8 @@ fn lists_and_vectors_that_do_not_fit_the_body() {
 #[test]
 fn runs_and_times_that_cannot_be() {
     case(PLANE, "'Mass-spring'", "'Local shape'", "14:8 two runs are called \"Local shape\": `run[0]` and `run[1]`");
-    case(PLANE, "'Mass-spring'", "'a/b'", "14:8 the name \"a/b\" cannot be used in files");
-    case(PLANE, "'Mass-spring'", "' a'", "14:8 the name \" a\" cannot be used in files");
+    case(PLANE, "'Mass-spring'", "'a/b'", "14:8 the name \"a/b\" cannot be used in files write \"a-b\": no slash");
+    case(PLANE, "'Mass-spring'", "' a'", "14:8 the name \" a\" cannot be used in files write \"a\": no slash");
     case(PLANE, "'T/50'", "10", "4:8 the time step of \"Local shape\" is 10 s, longer than the whole scene of 3 s");
     case(PLANE, "'T/50'", "1e-300", "4:8 the time step is 1e-300 s");
     case(PLANE, "= 3\n", "= 1e9\n", "3:12 make 6.000e10 frames; the most is 10 000 000");

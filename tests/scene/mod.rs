@@ -12,6 +12,7 @@ mod material;
 mod meshes;
 mod mistakes;
 mod peers;
+mod plausible;
 mod plural;
 mod recordings;
 mod robust;

@@ -268,7 +268,7 @@ fn mistakes_in_one_of_several_bodies() {
     );
     let warned = good(
         &TWO.replace("name = 'Both'", "name = 'Both'\nbodies = ['cube']")
-            .replace("models = {", "bodies = ['cube']\nmodel = { kind = 'shape-based', stiffness = 1 }\n#")
+            .replace("models = {", "bodies = ['cube']\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n#")
             .replace("bodies = ['block']", "bodies = ['cube']"),
     );
     let [warning] = &warned.warnings[..] else { panic!("{:?}", warned.warnings) };

@@ -21,7 +21,7 @@ states = 'played.npz'
 
 const REST: [f64; 8] = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
 
-fn load(scene: &str, bytes: &[u8]) -> (tempfile::TempDir, Result<Scene, SceneError>) {
+pub(super) fn load(scene: &str, bytes: &[u8]) -> (tempfile::TempDir, Result<Scene, SceneError>) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("played.npz"), bytes).unwrap();
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
@@ -29,7 +29,7 @@ fn load(scene: &str, bytes: &[u8]) -> (tempfile::TempDir, Result<Scene, SceneErr
     (folder, scene)
 }
 
-fn stored(arrays: &[Array]) -> Vec<u8> {
+pub(super) fn stored(arrays: &[Array]) -> Vec<u8> {
     archive(arrays, CompressionMethod::Stored)
 }
 
@@ -746,4 +746,25 @@ fn damaged_lists_are_told() {
     refused("l.pvd", "l.pvd", windows, "x/a.vtu)");
     refused("b.obj", "b.obj", "v 0 0 0", "`b.obj` is a file of one moment");
     refused("a0.toml", "a*.toml", "", "`a*.toml: a0.toml` is neither a grid (.vtu, .vtp, .pvtu, .vtk) nor a surface");
+/// A body of a recording has no key `convex`, so that the order of nodes is the only remedy.
+#[test]
+fn an_element_of_a_recording_that_is_inside_out() {
+    let nodes = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [1., 1., 1.]].concat();
+    let of = |elements: [i64; 8]| {
+        stored(&[
+            doubles("time", "(2,)", &[0.0, 1.0]),
+            doubles("position", "(2, 5, 3)", &nodes.repeat(2)),
+            doubles("rest", "(5, 3)", &nodes),
+            indices("elements", "(2, 4)", &elements),
+        ])
+    };
+    let scene = SCENE.replace(
+        "nodes = [[0, 0], [1, 0], [1, 1], [0, 1]]\nelements = [[0, 1, 2], [0, 2, 3]]",
+        "lattice = { cells = [1, 1, 1], side = 1 }",
+    );
+    let (_folder, right) = load(&scene, &of([0, 1, 2, 3, 1, 2, 3, 4]));
+    let (_folder, wrong) = load(&scene, &of([0, 2, 1, 3, 1, 3, 2, 4]));
+    right.unwrap_or_else(|error| panic!("{error}"));
+    let help = wrong.unwrap_err().mistakes()[0].help.clone();
+    assert_eq!(help.as_deref(), Some("take the nodes of each in the order [0, 2, 1, 3] for tetrahedra"));
 }

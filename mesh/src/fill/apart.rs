@@ -75,8 +75,7 @@ pub(super) fn fill(
 fn volumes(part: &Filled) -> Vec<f64> {
     let Cage { nodes, elements, filled, convex, overlap, .. } = &part.cage;
     let solids = if *convex { Solids::Convex } else { Solids::Ordered };
-    let mut body =
-        Body::new(Dimension::Space, nodes.clone(), vec![1.0; nodes.len()], elements.clone(), solids, None);
+    let mut body = Body::new(Dimension::Space, nodes.clone(), vec![1.0; nodes.len()], elements.clone(), solids, None);
     body.fill.clone_from(filled);
     let (mut volumes, measures) = (node_volumes(&body), part.surface.measures());
     if measures.closed {

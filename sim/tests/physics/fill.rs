@@ -3,11 +3,12 @@
 use super::conformance::cases;
 use super::support::{Noise, floor, lattice, mass_spring, shape_based, stepped};
 use glam::DVec3;
+use localshape_sim::geometry::node_volumes;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ModelParameters};
 use localshape_sim::stability::Stability;
 use localshape_sim::{
-    Body, Crew, IndexLists, Integrator, Kernel, Solids, Springs, State, Stepping, Surroundings, World,
+    Body, Crew, Dimension, IndexLists, Integrator, Kernel, Solids, Springs, State, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -279,4 +280,13 @@ fn the_stiffest_element_bounds_the_step() {
             assert!(after.elastic < 20.0 * before.elastic, "{model:?}: {} {}", before.elastic, after.elastic);
         }
     }
+}
+
+#[test]
+fn what_is_filled_of_an_element_is_shared_by_its_nodes() {
+    let rest = (0..6).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0)).collect();
+    let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
+    let body = Body::new(Dimension::Plane, rest, vec![1.0; 6], elements, Solids::Ordered, None);
+    let body = Body { fill: Some(vec![0.5, 1.0 / 256.0]), ..body };
+    assert_eq!(node_volumes(&body), [128.0, 128.0, 129.0, 129.0, 1.0, 1.0].map(|share| share / 1024.0));
 }

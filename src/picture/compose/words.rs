@@ -129,8 +129,9 @@ impl<'a> Words<'a> {
         Writer::new(self.palette, self.fonts, scale)
     }
 
-    /// The words without room in pictures of some runs, each with the consequence.
-    fn left_out(&self, runs: &[usize], columns: usize) -> Vec<String> {
+    /// The words without room in pictures of some runs, each with the consequence, and the runs whose names and whose
+    /// descriptions are shortened.
+    fn left_out(&self, runs: &[usize], columns: usize) -> (Vec<String>, [Vec<&'a str>; 2]) {
         let (view, Around { layout, .. }) = (self.view(), self.around(runs, columns));
         let Labels { name, model, count, number, .. } = view.labels;
         let is_missed = |part: &Part| match part {
@@ -150,17 +151,15 @@ impl<'a> Words<'a> {
                 told.push("panels do not name all possible events of the chart".to_owned());
             }
         }
-        let names = self.names(runs);
+        let (names, mut shortened) = (self.names(runs), [Vec::new(), Vec::new()]);
         for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
             let heading = self.heading(at, runs, &names, &layout);
             let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
-            for (is_shortened, what) in writer.is_shortened(&heading, room).into_iter().zip(["name", "description"]) {
-                if is_shortened {
-                    told.push(format!("the {what} of run `{}` is shortened", names[at]));
-                }
+            for (of, is_shortened) in shortened.iter_mut().zip(writer.is_shortened(&heading, room)) {
+                of.extend(is_shortened.then_some(names[at]));
             }
         }
-        told
+        (told, shortened)
     }
 }
 
@@ -176,10 +175,20 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let columns = composer.columns(&runs);
     // The course of the scene may change the arrangement, between that of the start and side by side.
     let last = if scene.view.columns.is_none() { runs.len().max(columns) } else { columns };
-    let mut told = words.left_out(&runs, columns);
+    let (mut told, mut shortened) = words.left_out(&runs, columns);
     for columns in columns + 1..=last {
-        let there = words.left_out(&runs, columns);
+        let (there, also) = words.left_out(&runs, columns);
         told.retain(|one| there.contains(one));
+        shortened.iter_mut().zip(also).for_each(|(of, also)| of.retain(|run| also.contains(run)));
+    }
+    for (of, what) in shortened.iter().zip(["name", "description"]) {
+        match of[..] {
+            [] => {}
+            [run] => told.push(format!("the {what} of run `{run}` is shortened")),
+            [first, .., last] => {
+                told.push(format!("the {what}s of {} runs are shortened, of `{first}` to `{last}`", of.len()));
+            }
+        }
     }
     let lacks_bar: Vec<_> = (columns..=last).map(|columns| composer.lacks_bar(&runs, columns)).collect();
     if lacks_bar.contains(&true) {

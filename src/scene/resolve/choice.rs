@@ -151,7 +151,13 @@ pub(super) fn check_names<'a>(
         let unfit = |c: char| matches!(c, '/' | '\\') || c.is_control();
         if name.trim() != name || name.contains(unfit) {
             let message = format!("the name {} cannot be used in files", quoted(name));
-            report.at(&path, message, "no slash, no control character, and no space at either end");
+            let fit = name.replace(unfit, "-");
+            let fit = Some(fit.trim()).filter(|fit| !fit.is_empty()).map_or("another name".to_owned(), quoted);
+            report.at(
+                &path,
+                message,
+                format!("write {fit}: no slash, no control character, and no space at either end"),
+            );
         }
         if let Some(first) = known.get(name) {
             let [first, second] = [first, &place].map(|place| written(place));

@@ -1,7 +1,7 @@
 //! Checks of elements, springs and faces that a body lists.
 
 use super::lists::{ListSource, Lists};
-use crate::reading::collector::Collector;
+use crate::reading::collector::{Collector, PathPart};
 use crate::reading::words::{count, list};
 use crate::scene::mesh::crossing;
 use crate::sim::geometry::{Alike, bounds, kind, volume_by_faces};
@@ -164,12 +164,15 @@ fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all
             ("are clockwise; expected counter-clockwise", Some("list the nodes of each backwards".to_owned()))
         }
         (Wrong::Flat, Dimension::Space) => {
-            ("have no volume: their nodes are in planes, or not in their order", Some(CONVEX.to_owned()))
+            ("have no volume: their nodes are in planes, or not in their order", convex(lists))
         }
-        (Wrong::Around, _) => (
-            "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
-            Some(format!("take the nodes of each in the order {AROUND:?}; or {CONVEX}")),
-        ),
+        (Wrong::Around, _) => {
+            let order = format!("take the nodes of each in the order {AROUND:?}");
+            (
+                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
+                Some(convex(lists).map_or(order.clone(), |convex| format!("{order}; or {convex}"))),
+            )
+        }
         (Wrong::Turned, Dimension::Space) => {
             let mut orders: Vec<String> = Vec::new();
             for &(_, kind) in found {
@@ -184,8 +187,8 @@ fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all
                     orders.push(order);
                 }
             }
-            let orders = list(&orders, "and", str::to_owned);
-            let help = format!("{CONVEX}, or take the nodes of each in the order {orders}");
+            let order = format!("take the nodes of each in the order {}", list(&orders, "and", str::to_owned));
+            let help = convex(lists).map_or(order.clone(), |convex| format!("{convex}, or {order}"));
             ("are turned inside out at rest", Some(help))
         }
     };
@@ -208,11 +211,10 @@ fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (Strin
         }
         (Wrong::Flat, _) => {
             let help = match kind {
-                ElementKind::Hexahedron => "list the corners with x fastest, then y, then z",
-                _ => CONVEX,
+                ElementKind::Hexahedron => Some("list the corners with x fastest, then y, then z".to_owned()),
+                _ => convex(lists),
             };
-            let message = format!("`{name}` has no volume: its nodes are in a plane, or not in their order");
-            (message, Some(help.to_owned()))
+            (format!("`{name}` has no volume: its nodes are in a plane, or not in their order"), help)
         }
         (Wrong::Around, _) => {
             let expected = "expected x fastest, then y, then z";
@@ -227,8 +229,11 @@ fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (Strin
     }
 }
 
-/// The remedy that allows any order.
-const CONVEX: &str = "write convex = true in [body] for nodes in any order";
+/// The remedy that allows any order; `None` for a body of a recording, which has no such key.
+fn convex(lists: &Lists) -> Option<String> {
+    let is_typed = lists.source.body.first() == Some(&PathPart::Key("body"));
+    is_typed.then(|| "write convex = true in [body] for nodes in any order".to_owned())
+}
 
 /// The most nodes of an element whose faces are found from its convex hull: more take seconds.
 const MOST_IN_HULL: usize = 10_000;
@@ -331,27 +336,5 @@ fn point(point: DVec3, dimension: Dimension) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_mended_order_turns_an_element_right_side_out() {
-        let corner = |x: i32, y: i32, z: i32| DVec3::new(f64::from(x), f64::from(y), f64::from(z)) + 100.0;
-        let (o, x, y, z) = (corner(0, 0, 0), corner(1, 0, 0), corner(0, 1, 0), corner(0, 0, 1));
-        let cube: Vec<_> = (0..8).map(|bits| corner(bits & 1, bits >> 1 & 1, bits >> 2)).collect();
-        for (kind, corners, expected) in [
-            (ElementKind::Polygon, vec![o, x, y], 0.5),
-            (ElementKind::Tetrahedron, vec![o, x, y, z], 1.0 / 6.0),
-            (ElementKind::Pyramid, vec![o, x, corner(1, 1, 0), y, z], 1.0 / 3.0),
-            (ElementKind::Wedge, vec![o, x, y, z, corner(1, 0, 1), corner(0, 1, 1)], 0.5),
-            (ElementKind::Hexahedron, cube, 1.0),
-        ] {
-            let right: Vec<u32> = (0..).take(corners.len()).collect();
-            let wrong = mended(kind, &right).1;
-            assert!((volume_by_faces(kind, &right, &corners) - expected).abs() < 1e-12, "{kind:?}");
-            assert!((volume_by_faces(kind, &wrong, &corners) + expected).abs() < 1e-12, "{kind:?}");
-            let mended = mended(kind, &wrong).1;
-            assert!((volume_by_faces(kind, &mended, &corners) - expected).abs() < 1e-12, "{kind:?}");
-        }
-    }
-}
+#[path = "../../../tests/inside/elements.rs"]
+mod tests;

@@ -75,12 +75,6 @@ pub(super) fn make(
         report.at(&path, format!("`{name}` has no extent: all its points are at one place"), None);
         return None;
     }
-    /// Longer bodies are rarely meant to be that long (m).
-    const LONG: f64 = 50.0;
-    if file.scale.is_none() && longest >= LONG {
-        let message = format!("`{name}` is {} m long, as no `scale` is given", short(longest));
-        report.warn(&path, message, "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre");
-    }
     if let Some(Positive(weld)) = file.weld.filter(|_| read.joined > 0) {
         let joined = several(read.joined, "point").unwrap_or_default();
         report.warn(

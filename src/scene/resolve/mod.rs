@@ -18,13 +18,13 @@ use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFi
 use super::generate::Generator;
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
-use super::mesh::MeshFile;
+use super::mesh::{MeshFile, longest};
 use super::structure::ValidFile;
 use super::{ALL_BODIES, Run, Scene, SceneBody, subject};
 use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
-use crate::reading::words::{count, quoted, short};
+use crate::reading::words::{count, ends, quoted, short};
 use crate::sim::geometry::overlaps;
 use crate::sim::{Dimension, Obstacle};
 use body::{ResolvedBody, TypedBody};
@@ -310,6 +310,10 @@ fn resolve(
     warn_of_steps(&scene, report);
     warn_of_overlaps(&scene, &parts.places, report);
     warn_of_braked_rotation(&scene, report);
+    warn_of_sizes(&scene, &parts, report);
+    if let Some((run, [message, help])) = scene.lies_flat() {
+        report.warn(&key_path!["run", run, "model"], message, help);
+    }
     Some(scene)
 }
 
@@ -476,7 +480,8 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
         report.warn(
             &key_path!["time", "frames_per_second"],
             message,
-            format!("use at least {} to show the end", short((1.0 / scene.duration).ceil())),
+            // Rounded down, there would be one frame again.
+            format!("use at least {} to show the end", ends([0.0, 1.0 / scene.duration])[1]),
         );
     }
     let simulated = || (0..).zip(&scene.runs).filter(|(_, run)| run.recording.is_none());
@@ -509,7 +514,7 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
 /// Warns of steps near or above the largest stable one, and of integrators that are never stable.
 fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
     for run in 0..scene.runs.len() {
-        if let Some((_, [message, help])) = scene.near_limit(run) {
+        if let Some([message, help]) = scene.near_limit(run) {
             let own = key_path!["run", run, "step"];
             let path = if report.is_typed(&own) { own.to_vec() } else { key_path!["time", "step"].to_vec() };
             report.warn(&path, message, help);
@@ -557,6 +562,38 @@ fn warn_of_overlaps(scene: &Scene, places: &[Place], report: &mut Collector<'_>)
     };
     let message = format!("{one} and {other} overlap at the start{more}: bodies go through each other");
     report.warn(&places[second], message, "move one of them, with `offset` or `lowest`, unless they may overlap");
+}
+
+/// Warns of sizes far from metres, unless a `scale` is given, and of recordings of another size.
+fn warn_of_sizes(scene: &Scene, parts: &SceneParts, report: &mut Collector<'_>) {
+    /// Longer bodies are rarely meant to be that long (m).
+    const LONG: f64 = 50.0;
+    let typed = parts.bodies.iter().flatten().zip(&parts.places);
+    let length =
+        |SceneBody { body, .. }: &SceneBody| longest(body.carried.as_ref().map_or(&body.rest, |fine| &fine.rest));
+    let sizes = scene.bodies.iter().map(length).zip(typed);
+    let long: Vec<_> = sizes.filter(|(length, (file, _))| *length >= LONG && file.scale.is_none()).collect();
+    if let Some(&(length, (file, place))) = long.first() {
+        let more = if long.len() > 1 { ", as are others" } else { "" };
+        let length = short(length);
+        match &file.mesh {
+            Some(name) => report.warn(
+                &key_path![place; "mesh"],
+                format!("`{name}` is {length} m long{more}, as no `scale` is given"),
+                "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre",
+            ),
+            None => report.warn(
+                place,
+                format!("{} is {length} m long{more}", body::in_words(file.name.as_deref().unwrap_or_default())),
+                "lengths are in metres: divide those of the body by 1000 if they are in millimetres, unless it is that long",
+            ),
+        }
+    }
+    for run in 0..scene.runs.len() {
+        if let Some([message, help]) = scene.misfits(run) {
+            report.warn(&key_path!["run", run, "states"], message, help);
+        }
+    }
 }
 
 fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {

@@ -4,7 +4,6 @@ use super::Walk;
 use super::expect::first_sentence;
 use crate::reading::collector::{PathPart, written};
 use crate::reading::words::{list, nearest, quoted, shortened};
-use crate::scene::gone::instead;
 use serde_json::Value as Json;
 use std::ops::Range;
 use toml::Spanned;
@@ -101,9 +100,6 @@ impl Walk<'_, '_, '_> {
         // There may be millions of mistakes, and finding a similar name takes long.
         if self.report.only_counted() {
             return;
-        }
-        if let Some(instead) = instead(&self.path, None) {
-            return self.mistake(span, format!("`{}` is gone", self.here()), Some(instead.to_owned()));
         }
         let known = known(schema);
         let place = match &self.path[..] {

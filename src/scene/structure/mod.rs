@@ -7,7 +7,6 @@ pub(super) mod expect;
 mod keys;
 
 use super::file::LARGEST;
-use super::gone::instead;
 use super::schema::{by_name, choices, variants};
 use super::step::NamedStep;
 use crate::look::typed::TypedColour;
@@ -159,10 +158,7 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 
     fn string(&mut self, schema: &Json, text: &str, span: Range<usize>) -> Json {
-        if let Some(instead) = instead(&self.path, Some(text)) {
-            let message = format!("`{} = {}` is gone", self.here(), quoted(text));
-            self.mistake(span, message, Some(instead.to_owned()));
-        } else if let Some(choices) = choices(schema) {
+        if let Some(choices) = choices(schema) {
             if !choices.contains(&text) {
                 let message =
                     format!("`{}` is {}; expected {}", self.here(), quoted(text), list(&choices, "or", quoted));

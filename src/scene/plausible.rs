@@ -1,0 +1,121 @@
+//! Sizes and stiffnesses of a scene that are hardly meant.
+
+use super::mesh::longest;
+use super::{Run, Scene, SceneBody};
+use crate::reading::captions::{quantity, rounded};
+use crate::reading::words::{list, quoted, short};
+use crate::sim::geometry::volumes_at_rest;
+use crate::sim::model::ElasticModel;
+use crate::sim::{Body, Dimension, State};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A body that hardly carries its own weight.
+struct Soft<'a> {
+    run: usize,
+    body: &'a SceneBody,
+    model: &'a dyn ElasticModel,
+    /// Its height (m) and its modulus (Pa; N/m in the plane).
+    height: f64,
+    young: f64,
+    /// `ρ g h / E`: the strain of its lowest layer, twice the mean one.
+    strain: f64,
+}
+
+impl Scene {
+    /// The message and remedy for a run whose recording is of another size than the bodies that other runs simulate.
+    pub(super) fn misfits(&self, number: usize) -> Option<[String; 2]> {
+        /// The least ratio. Units of length differ by 100 or 1000.
+        const FAR: f64 = 100.0;
+        let of_rest = |run: &Run| run.bodies.bodies().iter().map(|body| longest(&body.rest)).fold(0.0, f64::max);
+        let simulated = self.runs.iter().filter(|run| run.recording.is_none()).map(of_rest).fold(0.0, f64::max);
+        let run = self.runs.get(number).filter(|run| run.recording.is_some() && simulated > 0.0)?;
+        let of_body = |body| longest(&run.initial.position[run.bodies.nodes(body)]);
+        let recorded = (0..run.of.len()).map(of_body).fold(0.0, f64::max);
+        let ratio = recorded / simulated;
+        if recorded == 0.0 || (1.0 / FAR..FAR).contains(&ratio) {
+            return None;
+        }
+        let name = quoted(&run.name);
+        let [times, recorded, simulated] = [rounded(ratio, 2), recorded, simulated].map(short);
+        let message = format!(
+            "the recording of {name} is {times} times as long as the simulated bodies: {recorded} m beside {simulated} m"
+        );
+        let scale = short(libm::exp10(-libm::round(libm::log10(ratio))));
+        Some([message, format!("lengths are in metres: write scale = {scale} in this run if its unit is another one")])
+    }
+
+    /// The message for the bodies that lie flat under their own weight, the remedy for the softest one, and its run.
+    pub(super) fn lies_flat(&self) -> Option<(usize, [String; 2])> {
+        /// The mean strain from which on a body is told of. Linear theory then compresses its lowest layer by two thirds: of
+        /// the shape that was meant nothing is left.
+        const FLAT: f64 = 1.0 / 3.0;
+        /// The mean strain of the remedy.
+        const FIRM: f64 = 0.1;
+        let parts = self.runs.iter().enumerate().flat_map(|(number, run)| {
+            run.parts(self).enumerate().filter_map(move |(place, part)| self.soft(number, place, part))
+        });
+        let found: Vec<_> = parts.filter(|soft| soft.strain / 2.0 > FLAT).collect();
+        let Soft { run, body, model, height, young, strain } =
+            found.iter().max_by(|one, other| one.strain.total_cmp(&other.strain))?;
+        let mut names: Vec<_> = found.iter().map(|soft| &self.runs[soft.run].name).collect();
+        names.dedup();
+        let unit = if body.body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
+        let of = if body.name.is_empty() { "the body".to_owned() } else { quoted(&body.name) };
+        let message = format!(
+            "{of} lies flat under its own weight in {}: ρ g h / E = {}, with a height h of {} m and E = {}",
+            list(&names, "and", quoted),
+            rounded(*strain, 2),
+            short(*height),
+            quantity(*young, unit)
+        );
+        let times = strain / 2.0 / FIRM;
+        let firm = match model.typed_material() {
+            Some(typed) => format!("young = {:e}", rounded(times * typed.young, 2)),
+            None => format!("stiffness = {:e}", rounded(times * model.stiffness(), 2)),
+        };
+        Some((*run, [message, format!("with {firm} it sinks by a tenth of its height")]))
+    }
+
+    /// How soft a body at a place of a run is; `None` if it has no volume, or may fall for ever.
+    fn soft<'a>(
+        &'a self,
+        number: usize,
+        place: usize,
+        (model, body): (&'a dyn ElasticModel, &'a SceneBody),
+    ) -> Option<Soft<'a>> {
+        let (run, up) = (&self.runs[number], -self.gravity.normalize_or_zero());
+        let nodes = run.bodies.nodes(place);
+        let is_gripped = run.grips.iter().any(|grip| grip.nodes.iter().any(|node| nodes.contains(&(*node as usize))));
+        if up == DVec3::ZERO || self.obstacles.is_empty() && !is_gripped {
+            return None;
+        }
+        let volume = Some(filled(&body.body)).filter(|&volume| volume > 0.0)?;
+        let heights = run.initial.position[nodes].iter().map(|at| at.dot(up));
+        let (low, high) =
+            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (at.min(low), at.max(high)));
+        let (height, density) = (high - low, body.body.mass.iter().sum::<f64>() / volume);
+        let young = modulus(model, &body.body, up, volume)?;
+        let strain = density * self.gravity.length() * height / young;
+        Some(Soft { run: number, body, model, height, young, strain })
+    }
+}
+
+/// The volume of what is filled of the elements of a body at rest (m³; m² in the plane).
+fn filled(body: &Body) -> f64 {
+    let parts = |element| body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+    volumes_at_rest(body).into_iter().enumerate().map(|(element, volume)| volume * parts(element)).sum()
+}
+
+/// Young's modulus of a model on a body with a volume: of its material, or else from its energy when the body is compressed a
+/// little along a direction.
+fn modulus(model: &dyn ElasticModel, body: &Arc<Body>, along: DVec3, volume: f64) -> Option<f64> {
+    const STRAIN: f64 = 1e-3;
+    if let Some(material) = model.material(body) {
+        return Some(material.young);
+    }
+    let squeezed = body.rest.iter().map(|&at| at - along * (STRAIN * along.dot(at))).collect();
+    let (forces, memory) = (model.prepare(body), model.start(body, &body.rest));
+    let report = forces.report(State::at_rest(squeezed).nodes(), &memory, &mut |_, _, _| ());
+    report.energy.map(|energy| 2.0 * energy / (STRAIN * STRAIN * volume)).filter(|&young| young > 0.0)
+}
