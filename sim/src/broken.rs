@@ -92,5 +92,9 @@ mod tests {
         assert_eq!(after(&[1, 2]), [true, false]);
         assert_eq!(after(&[3, 4, 5]), [false, true]);
         assert_eq!(after(&[0, 1, 3]), [true, false]);
+        // Springs that never joined the second square do not leave it broken.
+        let some = MassSpring { springs: [[0, 1], [0, 2], [1, 3], [2, 3]].into(), ..model };
+        let broken = Broken::new(&some, &body).expect("springs that break");
+        assert_eq!(broken.elements(&[0.0, 1.0, 1.0, 0.0]), [true, false]);
     }
 }

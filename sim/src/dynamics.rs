@@ -5,6 +5,7 @@ use super::body::Body;
 
 use super::crew::Crew;
 use super::hull::bounds;
+use super::integrate::Unsolved;
 use super::model::{Report, Share};
 use super::part::Part;
 use super::state::{Divergence, Nodes, Runaway, State};
@@ -40,6 +41,11 @@ pub(super) trait Dynamics: Send + Sync {
     /// Where and when a run diverged whose next step was not taken.
     fn divergence(&self, system: &System, state: &State, runaway: Runaway) -> Divergence {
         system.divergence(state, runaway)
+    }
+
+    /// The steps that an implicit method has not solved.
+    fn unsolved(&self, _: &State) -> Option<Unsolved> {
+        None
     }
 
     /// The number of steps taken. The state may be behind until [`Self::settle`] is called.

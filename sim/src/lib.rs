@@ -66,7 +66,7 @@ pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};
 pub use element::{Dimension, ElementKind, Solids};
 pub use field::{Field, Support};
 pub use grip::Grip;
-pub use integrate::Integrator;
+pub use integrate::{Integrator, Unsolved};
 /// Measurements of the processor for benchmarks.
 #[doc(hidden)]
 pub use kernel::peak;

@@ -2,6 +2,8 @@
 
 use super::body::Body;
 use super::element::Dimension;
+use super::lanes::{Lanes, each};
+use super::law::Corners;
 use super::volume::volumes_at_rest;
 
 /// An isotropic elastic material. In the plane, it is a sheet of unit thickness under plane stress.
@@ -56,6 +58,44 @@ impl Material {
     }
 }
 
+/// Damping `D` of elements in proportion to their elastic constants, as in the shape model. The stiffest one has the constant that is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Damping {
+    /// `D` of the stiffest element (N s/m).
+    pub(crate) most: f64,
+    /// `D` for each metre of [`per_shear`] (N s/m²); 0 if all elements have the same.
+    pub(crate) slope: f64,
+}
+
+impl Damping {
+    /// Of the elements of a body.
+    pub(crate) fn new(most: f64, body: &Body) -> Self {
+        /// Equal stiffnesses differ by round-off only.
+        const EQUAL: f64 = 1e-10;
+        let each = per_shear(body);
+        let (low, high) = each.iter().fold((f64::INFINITY, 0.0), |(low, high), &one| (one.min(low), one.max(high)));
+        Self { most, slope: if high - low > EQUAL * high { most / high } else { 0.0 } }
+    }
+
+    /// `D` of elements in lanes, with their volumes (m³, in the plane m²).
+    #[inline(always)]
+    pub(crate) fn of<L: Lanes>(&self, rest: &Corners<'_, L>, volume: L, dimensions: f64) -> L {
+        if self.slope == 0.0 {
+            return L::splat(self.most);
+        }
+        let (zero, first, part) = (L::splat(0.0), rest.position(0), L::splat(1.0 / rest.count() as f64));
+        let (mut sum, mut squares) = ([zero; 3], zero);
+        for corner in 1..rest.count() {
+            let p = rest.position(corner);
+            let [x, y, z] = each!(3, axis => p[axis] - first[axis]);
+            sum = [sum[0] + x, sum[1] + y, sum[2] + z];
+            squares = squares + (x * x + y * y + z * z);
+        }
+        let spread = squares - (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) * part;
+        L::splat(2.0 * dimensions * self.slope) * volume / spread
+    }
+}
+
 /// `2 d V / Σ |R0|²` of each element (m): its elastic constant for a shear modulus of 1.
 pub(crate) fn per_shear(body: &Body) -> Vec<f64> {
     let factor = 2.0 * dimensions(body.dimension);
@@ -64,7 +104,7 @@ pub(crate) fn per_shear(body: &Body) -> Vec<f64> {
 }
 
 /// `Σ |R0|²` of an element, and `Σ R0 R0ᵀ` as xx, yy, zz, xy, xz, yz (m²).
-fn spread(body: &Body, nodes: &[u32]) -> (f64, [f64; 6]) {
+pub(crate) fn spread(body: &Body, nodes: &[u32]) -> (f64, [f64; 6]) {
     let rest = || nodes.iter().map(|&node| body.rest[node as usize]);
     let middle = rest().sum::<glam::DVec3>() / nodes.len() as f64;
     let mut sums = [0.0; 6];

@@ -1,6 +1,7 @@
 //! A [`Snapshot`] of a run: the view of a simulation for drawing, diagnostics and files.
 
 use super::diagnostics::Diagnostics;
+use super::integrate::Unsolved;
 use super::placement::Placement;
 use super::state::Status;
 use glam::DVec3;
@@ -35,6 +36,8 @@ pub struct Snapshot {
     pub of_bodies: Vec<Diagnostics>,
     /// Whether the run has diverged.
     pub status: Status,
+    /// The steps until then that an implicit method has not solved; `None` if there are none.
+    pub unsolved: Option<Unsolved>,
 }
 
 /// One frame of a scene: the requested runs at the same moment.

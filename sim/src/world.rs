@@ -473,6 +473,7 @@ impl World {
             diagnostics,
             of_bodies,
             status: state.status,
+            unsolved: dynamics.unsolved(state),
         }
     }
 }

@@ -73,6 +73,9 @@ pub(super) fn run_all(
                 console::print(&format!("to go on: {}\n", with_option(words, "--resume")))?;
             }
         }
+        if !options.printing.quiet {
+            report::unsolved(&summary).for_each(|message| note(&message));
+        }
         if result.is_err() {
             break;
         }

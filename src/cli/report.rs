@@ -4,7 +4,7 @@ use super::console::columns;
 use crate::output::{Numbers, Outcome, RunStatus, RunSummary, Spent, Summary};
 use crate::reading::captions::quantity;
 use crate::reading::words::short;
-use crate::sim::Diagnostic;
+use crate::sim::{Diagnostic, Unsolved};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -57,7 +57,7 @@ fn table(runs: &[RunSummary]) -> String {
 
 /// The row of a run, and one of each of its bodies if there are several.
 fn rows(run: &RunSummary) -> Vec<[String; 5]> {
-    let status = match &run.status {
+    let mut status = match &run.status {
         RunStatus::Ok => "ok".to_owned(),
         RunStatus::Ended { time } => format!("recording ends at {} s", short(*time)),
         RunStatus::Diverged { time, step, body, element } => {
@@ -67,6 +67,9 @@ fn rows(run: &RunSummary) -> Vec<[String; 5]> {
             format!("diverged at {} s (step {step}{place})", short(*time))
         }
     };
+    if let Some(Unsolved { steps, .. }) = run.unsolved {
+        status += &format!(", {steps} step{} not solved", if steps == 1 { "" } else { "s" });
+    }
     let row = |name: String, status: String, numbers: Option<&Numbers>| {
         let Some(Numbers { diagnostics, broken, .. }) = numbers else {
             return [name, status, String::new(), String::new(), String::new()];
@@ -85,6 +88,19 @@ fn rows(run: &RunSummary) -> Vec<[String; 5]> {
 fn causes(summary: &Summary) -> String {
     let line = |run: &RunSummary| Some(format!("{} diverged: {}\n", run.name, run.cause.as_ref()?.words));
     summary.runs.iter().filter_map(line).collect()
+}
+
+/// A warning for each run with steps that its integrator has not solved.
+pub(super) fn unsolved(summary: &Summary) -> impl Iterator<Item = String> {
+    summary.runs.iter().filter_map(|run| {
+        let Unsolved { steps, residual, first } = run.unsolved?;
+        let (run, first, step) = (&run.name, short(first), quantity(run.time_step, "s"));
+        let (of, residual) = (if steps == 1 { "a step" } else { "steps" }, quantity(residual, "m/s"));
+        Some(format!(
+            "“{run}” has {of} of {step} that `backward-euler` could not solve, first at {first} s, with a residual of up to {residual}; \
+             take shorter steps"
+        ))
+    })
 }
 
 /// A warning for each run whose body leaves its panel.

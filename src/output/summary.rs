@@ -3,7 +3,7 @@
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::scene::Scene;
-use crate::sim::{Chosen, Diagnostics, Divergence, Frame, Scope, Status};
+use crate::sim::{Chosen, Diagnostics, Divergence, Frame, Scope, Status, Unsolved};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 
@@ -108,6 +108,9 @@ pub(crate) struct RunSummary {
     /// The cause of its divergence; absent if it did not diverge, or if its states are read from a file.
     #[serde(flatten)]
     pub cause: Option<Cause>,
+    /// The steps until the last frame whose equation an implicit integrator has not solved; absent if it has solved all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unsolved: Option<Unsolved>,
     /// The frames drawn by this command in which a body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
@@ -201,6 +204,7 @@ impl Summary {
                 steps: 0,
                 status: RunStatus::Ok,
                 cause: None,
+                unsolved: None,
                 cut: Vec::new(),
                 last: None,
             }
@@ -231,6 +235,7 @@ impl Summary {
     pub(crate) fn note_last(&mut self, scene: &Scene, frame: &Frame) {
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
             let (snapshot, run) = (&run.snapshot, &scene.runs[run.run]);
+            summary.unsolved = snapshot.unsolved;
             summary.status = match snapshot.status {
                 Status::Ok => RunStatus::Ok,
                 Status::Diverged(Divergence { time, is_end: true, .. }) => RunStatus::Ended { time },

@@ -43,6 +43,24 @@ impl Scene {
         Some([message, format!("use {half} s or less, or `step = \"auto\"`")])
     }
 
+    /// The message and remedy for a run whose step makes a body much softer than its model says, as `xpbd` does.
+    pub(super) fn softened(&self, number: usize) -> Option<[String; 2]> {
+        const MUCH: f64 = 0.1;
+        let Run { name, bodies, models, step, of, .. } = &self.runs[number];
+        let of_each = models.iter().zip(bodies.bodies()).map(|(model, body)| model.softening(body, *step) - 1.0);
+        let (body, excess) = of_each.enumerate().max_by(|one, other| one.1.total_cmp(&other.1))?;
+        if self.runs[number].recording.is_some() || excess <= MUCH {
+            return None;
+        }
+        let body = if of.len() > 1 { format!(" of {}", quoted(&self.bodies[of[body]].name)) } else { String::new() };
+        let (name, step, excess, longest) =
+            (quoted(name), short(*step), (100.0 * excess).round(), short(step * (MUCH / excess).sqrt()));
+        let message = format!(
+            "with the time step of {name}, {step} s, the one iteration of `xpbd`{body} gives way about {excess} % more than its stiffness says"
+        );
+        Some([message, format!("use {longest} s or less for {} %", 100.0 * MUCH)])
+    }
+
     /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];

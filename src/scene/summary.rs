@@ -257,8 +257,8 @@ fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> St
     };
     let (e, friction) = (short(obstacle.restitution), short(obstacle.friction));
     let of = match obstacle.friction_of {
-        FrictionOf::Velocity => String::new(),
-        FrictionOf::Path => format!(" on the {}", typed(&obstacle.friction_of)),
+        FrictionOf::Path => String::new(),
+        FrictionOf::Velocity => " on velocities only".to_owned(),
     };
     format!("{shape}, e = {e}, μ = {friction}{of}{}", path(&obstacle.motion))
 }

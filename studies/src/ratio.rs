@@ -132,7 +132,7 @@ fn block(side: u32) -> Scene {
         "gravity = [0, -9.8, 0]
         time = {{ duration = 1, step = 'T/50' }}
         body = {{ lattice = {{ cells = [{side}, {side}, {side}], side = 0.1 }}, mass = 1, lowest = 0 }}
-        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3, friction_of = 'velocity' }}]
         [[run]]
         name = 'shape'
         model = {{ kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1, passes = 2 }}

@@ -45,6 +45,33 @@ fn diagnostics_of_each_run_and_frame() {
     assert!(rows.iter().any(|row| number(row[5]) > 0.0 && number(row[6]) > 0.0), "{table}");
 }
 
+/// Where springs break no velocity may solve a step of backward Euler.
+#[test]
+fn steps_that_are_not_solved_are_told() {
+    let place = Place::new();
+    let scene = "time = { duration = 1, step = 0.05, frames_per_second = 20, integrator = 'backward-euler' }
+        body = { lattice = { cells = [3, 3, 3], side = 0.1 }, mass = 0.01, spin = { axis = [0, 0, 1], rate = 8 } }
+        run = [{ name = 'torn', model = { kind = 'mass-spring', stiffness = 10, breaks_at = 0.1 } }]";
+    place.write("torn.toml", scene);
+    let ran = place.run("simulate torn.toml");
+    assert_eq!(ran.status, Some(0), "{}", ran.err);
+    let unsolved = place.json("output/torn/run.json")["runs"][0]["unsolved"].clone();
+    let (steps, first) = (unsolved["steps"].as_u64().expect("steps"), unsolved["first"].as_f64().expect("a time"));
+    assert!(steps > 0 && unsolved["residual"].as_f64().expect("a residual") > 1e-6, "{unsolved}");
+    assert!(ran.out.contains(&format!("ok, {steps} step")) && ran.out.contains(" not solved"), "{}", ran.out);
+    let line = "warning: “torn” has ";
+    let [told] = ran.err.lines().filter(|told| told.starts_with(line)).collect::<Vec<_>>()[..] else {
+        panic!("{}", ran.err)
+    };
+    assert!(told.contains(&format!(" first at {first} s, with a residual of up to ")), "{told}");
+    assert!(told.ends_with("; take shorter steps"), "{told}");
+    // A body at rest is solved.
+    place.write("still.toml", &scene.replace("rate = 8", "rate = 0"));
+    let ran = place.run("simulate still.toml").good();
+    assert!(!ran.out.contains("not solved"), "{}", ran.out);
+    assert!(place.json("output/still/run.json")["runs"][0].get("unsolved").is_none());
+}
+
 /// Springs that break are counted after the run, beside runs that do not break.
 #[test]
 fn what_is_broken_is_counted_if_something_breaks() {

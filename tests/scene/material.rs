@@ -71,7 +71,7 @@ fn materials_that_cannot_be() {
         BAR,
         "mass-spring', ",
         "mass-spring', young = 2e5, ",
-        "9:33 unknown key `young` in `run[1].model` `young` belongs to",
+        "9:33 unknown key `young` in `run[1].model` springs have a Poisson's ratio of their own, 1/4, in the plane 1/3; write `stiffness`: 6 E V/Σ L²",
     );
     // Elements that break have exact rotations.
     let breaks_at = |strain: &str| format!("young = 2e5, breaks_at = {strain}");

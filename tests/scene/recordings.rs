@@ -746,6 +746,8 @@ fn damaged_lists_are_told() {
     refused("l.pvd", "l.pvd", windows, "x/a.vtu)");
     refused("b.obj", "b.obj", "v 0 0 0", "`b.obj` is a file of one moment");
     refused("a0.toml", "a*.toml", "", "`a*.toml: a0.toml` is neither a grid (.vtu, .vtp, .pvtu, .vtk) nor a surface");
+}
+
 /// A body of a recording has no key `convex`, so that the order of nodes is the only remedy.
 #[test]
 fn an_element_of_a_recording_that_is_inside_out() {

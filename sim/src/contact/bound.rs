@@ -32,4 +32,6 @@ pub(crate) struct Floor {
     pub(crate) restitution: f64,
     /// Friction coefficient `μ`.
     pub(crate) friction: f64,
+    /// The longest time for which friction acts on the path of a node (s); 0 if it acts on velocities only.
+    pub(crate) longest: f64,
 }

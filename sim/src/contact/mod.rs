@@ -37,11 +37,12 @@ pub struct Obstacle {
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionOf {
     /// The velocity after the step, as in the paper. The displacement in the step remains: a body that rests on a slope
-    /// creeps down with any friction. The default.
-    #[default]
+    /// creeps down with any friction.
     Velocity,
     /// Also the path since the node touched the obstacle, by the same factor as the velocity. A body at rest does not
     /// creep with a restitution up to 0.3, with velocity Verlet up to 0.8; above, it creeps less than with `velocity`.
+    /// The default.
+    #[default]
     Path,
 }
 
@@ -170,12 +171,13 @@ impl Placed<'_> {
         }
     }
 
-    /// This obstacle as a [`Floor`], if it is one, does not move, and acts on velocities only.
+    /// This obstacle as a [`Floor`], if it is one and does not move.
     pub(super) fn still_floor(&self) -> Option<Floor> {
         let &Obstacle { ref shape, restitution, friction, friction_of, .. } = self.obstacle;
         match *shape {
-            Shape::Floor { normal, height } if self.moving.is_none() && friction_of == FrictionOf::Velocity => {
-                Some(Floor { normal, height, restitution, friction })
+            Shape::Floor { normal, height } if self.moving.is_none() => {
+                let longest = if friction_of == FrictionOf::Path { self.step } else { 0.0 };
+                Some(Floor { normal, height, restitution, friction, longest })
             }
             _ => None,
         }

@@ -23,6 +23,7 @@ use super::crew::Crew;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::model::{ElasticModel, Scratch};
 pub use super::motion::Interval;
+use super::part::Part;
 pub use super::state::Runaway;
 use super::state::{Nodes, State};
 use super::system::System;
@@ -143,6 +144,42 @@ pub trait Method: Send + Sync {
     /// # Errors
     /// When a node would become too fast; see [`Step::check`].
     fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway>;
+
+    /// The steps up to a state whose equation an implicit method has not solved; `None` if it has solved all.
+    fn unsolved(&self, state: &State) -> Option<Unsolved> {
+        let _ = state;
+        None
+    }
+}
+
+/// Steps whose equation an implicit method has not solved to round-off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Unsolved {
+    /// Their number.
+    pub steps: u64,
+    /// The largest residual of a node (m/s).
+    pub residual: f64,
+    /// The end of the first of them (s).
+    pub first: f64,
+}
+
+impl Unsolved {
+    /// With one more step that ends at a time (s).
+    fn after(known: Option<Self>, time: f64, residual: f64) -> Self {
+        let Self { steps, residual: largest, first } = known.unwrap_or(Self { steps: 0, residual, first: time });
+        Self { steps: steps + 1, residual: largest.max(residual), first }
+    }
+
+    /// As the memory of an integrator.
+    fn numbers(&self) -> [f64; 3] {
+        [self.steps as f64, self.residual, self.first]
+    }
+
+    /// From such a memory.
+    fn remembered(memory: &[f64]) -> Option<Self> {
+        let &[steps, residual, first] = memory else { return None };
+        Some(Self { steps: steps as u64, residual, first })
+    }
 }
 
 /// Accelerations and the next memory of the models, computed together. Methods keep it from step to step to save allocations.
@@ -210,11 +247,21 @@ impl Step<'_> {
         self.system.for_each_held(self.interval, next, each);
     }
 
-    /// Checks that no node is faster than the speed limit.
+    /// The elastic energy (J) of nodes at `position` (m), with the memory of models; `None` if a model has none.
+    fn energy(&self, position: &[DVec3], memory: &[f64]) -> Option<f64> {
+        // Energies do not depend on velocities.
+        let at = Nodes { position, velocity: position };
+        let of_part =
+            |part: &Part| part.forces.report(part.nodes_of(at), &memory[part.memory.clone()], &mut |_, _, _| {}).energy;
+        self.system.parts.iter().map(of_part).sum()
+    }
+
+    /// Gives the nodes that are [held](Self::hold) their velocities, and checks that no node is faster than the speed limit.
     ///
     /// # Errors
     /// The first node above the limit, or with a velocity that is NaN: the world has diverged, and keeps its last state.
-    pub fn check(&self, next: &State) -> Result<(), Runaway> {
+    pub fn check(&self, next: &mut State) -> Result<(), Runaway> {
+        self.hold(next);
         let limit = self.limit * self.limit;
         // NaN is never within the limit.
         let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
@@ -336,6 +383,10 @@ impl Dynamics for ByForces {
             state.steps += 1;
         }
         Ok(())
+    }
+
+    fn unsolved(&self, state: &State) -> Option<Unsolved> {
+        self.method.unsolved(state)
     }
 }
 

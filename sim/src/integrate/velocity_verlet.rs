@@ -50,7 +50,6 @@ impl Method for VelocityVerlet {
         for ((velocity, &before), &after) in next.velocity.iter_mut().zip(acceleration).zip(&at_end.acceleration) {
             *velocity += (after - before) * (0.5 * time);
         }
-        step.hold(next);
         step.check(next)?;
         next.memory.integrator.clear();
         if !step.is_damped() {

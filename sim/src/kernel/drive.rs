@@ -125,6 +125,7 @@ impl Dynamics for ByKernel {
                 },
                 floor: met.floor(),
                 grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
+                held: &[],
                 meet: if system.contact.is_empty() { None } else { Some(&meet) },
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };

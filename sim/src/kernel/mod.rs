@@ -146,6 +146,8 @@ pub(crate) struct Around<'a> {
     pub(crate) floor: Option<Floor>,
     /// The nodes that grips hold, if any grip is active.
     pub(crate) grips: Option<Held<'a>>,
+    /// Whether each node of the part is one of them, which has no speed of its own; empty if none is.
+    pub(crate) held: &'a [bool],
     /// Contact that needs all nodes, if there is any.
     pub(crate) meet: Option<&'a Meet<'a>>,
     /// The greatest speed (m/s) in a step.

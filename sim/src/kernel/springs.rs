@@ -392,7 +392,8 @@ impl OneSlab<'_> {
                         each!(3, axis => force[axis].store(place(axis)));
                     } else {
                         each!(3, axis => zero.store(place(axis)));
-                        lost = first_of(lost, arrays.advance(&update, stage, i, force), |lane| (i + lane) as u32);
+                        let lanes = arrays.advance(&update, stage, i, force);
+                        lost = first_of(lost, lanes, around.held, |lane| (i + lane) as u32);
                     }
                 }
             }
@@ -431,7 +432,8 @@ impl Work for Deferred<'_> {
                     zero.store(halo(axis));
                     zero.store(place(axis));
                 }
-                lost = first_of(lost, arrays.advance(&update, stage, i, force), |lane| (i + lane) as u32);
+                let lanes = arrays.advance(&update, stage, i, force);
+                lost = first_of(lost, lanes, around.held, |lane| (i + lane) as u32);
             }
         }
         lost

@@ -164,18 +164,20 @@ impl PartStepper {
         let Self { stepper, nodes, .. } = self;
         let lost = match around.grips.filter(|grips| (grips.hold)(nodes)) {
             None => stepper.run(passes, some, around, crew),
-            // In the second half of velocity Verlet the speed test comes before the grips, in the reference after them:
-            // here it is part of the pass, which does not know the nodes that are held. So a node that is held is tested
-            // with the velocity that its forces would give it. The limit is many times any speed of a run that does not
-            // diverge, so that this decides only in which step a run stops that does.
-            Some(grips) => some.into_iter().find_map(|pass| {
-                let lost = stepper.run(passes, pass..pass + 1, around, crew);
-                let Pass { number, share, .. } = passes.get(pass);
-                (grips.place)(nodes, number, share, &mut |node, position, velocity| {
-                    stepper.set_node(node, position, velocity);
-                });
-                lost
-            }),
+            Some(grips) => {
+                // All steps have the same grips.
+                let mut held = vec![false; nodes.len()];
+                (grips.place)(nodes, passes.first, 1.0, &mut |node, _, _| held[node] = true);
+                let around = Around { held: &held, ..*around };
+                some.into_iter().find_map(|pass| {
+                    let lost = stepper.run(passes, pass..pass + 1, &around, crew);
+                    let Pass { number, share, .. } = passes.get(pass);
+                    (grips.place)(nodes, number, share, &mut |node, position, velocity| {
+                        stepper.set_node(node, position, velocity);
+                    });
+                    lost
+                })
+            }
         };
         lost.map(|Lost { step, node }| Lost { step, node: nodes.start + node })
     }

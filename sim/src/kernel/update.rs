@@ -289,7 +289,13 @@ fn rebound<L: Lanes>(floor: &Floor, nodes: &mut NodeVector<L>, inside: L::Mask) 
     let is_deep = L::both(touches, zero.lt(depth));
     for axis in 0..3 {
         let out = position[axis] + normal[axis] * (depth * (one + e));
-        let bounced = position[axis] + normal[axis] * (depth + height);
+        let mut bounced = position[axis] + normal[axis] * (depth + height);
+        if floor.longest > 0.0 {
+            let longest = L::splat(floor.longest);
+            let touching = (one + e) * (L::splat(2.0) * depth.max(zero)).div(approach + (approach * approach).sqrt());
+            let time = touching.select(touching.lt(longest), longest);
+            bounced = bounced - slip[axis] * time * (one - kept);
+        }
         let turned = slip[axis] * kept + normal[axis] * speed + zero;
         position[axis] = bounced.select(approaches, out.select(is_deep, position[axis]));
         velocity[axis] = turned.select(approaches, velocity[axis]);
@@ -316,7 +322,7 @@ fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Obstacle, Shape};
+    use crate::contact::{FrictionOf, Obstacle, Shape};
     use crate::lanes::{Set, Work};
     use crate::motion::Motion;
 
@@ -349,16 +355,10 @@ mod tests {
             let normal = if round % 2 == 0 { DVec3::Y } else { DVec3::new(noise(), 1.0, noise()).normalize() };
             let pick = |of: [f64; 3]| of[round / 2 % 3];
             let (height, restitution, friction) = (noise(), pick([0.0, 0.5, 1.0]), pick([0.3, 0.0, 10.0]));
-            let floor = Floor { normal, height, restitution, friction };
-            let shape = Shape::Floor { normal, height };
-            let obstacle = Obstacle {
-                shape,
-                motion: Motion::Still,
-                pivot: DVec3::ZERO,
-                restitution,
-                friction,
-                friction_of: Default::default(),
-            };
+            let (shape, pivot) = (Shape::Floor { normal, height }, DVec3::ZERO);
+            let friction_of = if round / 6 % 2 == 0 { FrictionOf::Path } else { FrictionOf::Velocity };
+            let obstacle = Obstacle { shape, motion: Motion::Still, pivot, restitution, friction, friction_of };
+            let floor = obstacle.at(1.0, 0.1).still_floor().expect("a floor that stands still");
             let mut vector = || DVec3::new(noise(), noise(), noise());
             let position: [DVec3; MOST] = std::array::from_fn(|lane| {
                 let free = vector() * 0.1 + normal * height;

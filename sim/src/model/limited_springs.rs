@@ -16,34 +16,13 @@ use crate::body::Body;
 use crate::kernel::shapes::square;
 use crate::lanes::each;
 use crate::lists::IndexLists;
-use crate::topology::Springs;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The parameters of the model in a scene file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
-pub struct Parameters {
-    /// Elastic constant of each spring at its natural length (N/m).
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub stiffness: f64,
+mass_spring::parameters! {
     /// The greatest elongation, and shortening, of each spring as a share of its natural length.
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
-    pub limit: f64,
-    /// Damping constant of each spring, `D_ij` of Eq. (1) (N s/m). Default: 0. Not together with `damping_ratio`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping_ratio: Option<f64>,
-    /// The topology of the springs. Default: the springs that the body lists, else `edges+face-diagonals`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub springs: Option<Springs>,
+    limit: f64,
 }
 
 /// The model with its parameters in SI units, checked.

@@ -26,34 +26,49 @@ use crate::mode::Mode;
 use crate::state::Nodes;
 use crate::topology::Springs;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The parameters of the model in a scene file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
-pub struct Parameters {
-    /// Elastic constant of each spring, `k_ij` of Eq. (1) (N/m). Springs take no `young`, because their Poisson's ratio is not free.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub stiffness: f64,
-    /// Damping constant of each spring, `D_ij` of Eq. (1) (N s/m). Default: 0. Not together with `damping_ratio`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping_ratio: Option<f64>,
-    /// The topology of the springs. Default: the springs that the body lists, else `edges+face-diagonals`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub springs: Option<Springs>,
+/// What to write in place of a modulus. In uniform strain `W = k/2V Σ (L n·ε n)²` over springs with the directions `n`; the mean over all
+/// rotations of the body has `λ = μ = k Σ L²/15V`, in the plane `k Σ L²/8A`.
+pub(super) const YOUNG: &str = "springs have a Poisson's ratio of their own, 1/4, in the plane 1/3; write `stiffness`: 6 E V/Σ L² with the volume \
+                                V of the body and the lengths L of its springs, in the plane 3 E A/Σ L²; on cubes of side a about E a/2";
+
+/// Defines the parameters of springs in a scene file, with those of one model.
+macro_rules! parameters {
+    ($($(#[$attribute:meta])* $own:ident: $type:ty,)*) => {
+        /// The parameters of the model in a scene file.
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
+        #[schemars(extend("x-instead" = { "young": crate::model::mass_spring::YOUNG }))]
+        pub struct Parameters {
+            /// Elastic constant of each spring at its natural length, `k_ij` of Eq. (1) (N/m). Springs take no `young`, because their Poisson's
+            /// ratio is not free.
+            #[schemars(extend("exclusiveMinimum" = 0))]
+            pub stiffness: f64,
+            $($(#[$attribute])* pub $own: $type,)*
+            /// Damping constant of each spring, `D_ij` of Eq. (1) (N s/m). Default: 0. Not together with `damping_ratio`.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            #[schemars(range(min = 0.0))]
+            pub damping: Option<f64>,
+            /// Damping of each spring as a ratio `ζ = D / 2√(km)`, with its `stiffness` and `m` the mass of the lightest node, as in `step = "T/50"`.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            #[schemars(range(min = 0.0))]
+            pub damping_ratio: Option<f64>,
+            /// The topology of the springs. Default: the springs that the body lists, else `edges+face-diagonals`.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub springs: Option<crate::topology::Springs>,
+        }
+    };
+}
+pub(super) use parameters;
+
+parameters! {
     /// The elongation, as a share of the natural length, at which a spring breaks: it is taken out for good. Default: springs never break.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub breaks_at: Option<f64>,
+    breaks_at: Option<f64>,
 }
 
 /// The model with its parameters in SI units, checked.

@@ -34,7 +34,7 @@ use crate::element::{Dimension, ElementKind};
 use crate::kernel::rotation::cross;
 use crate::lanes::{Lanes, each};
 use crate::law::{ByLaw, Corners, Element, Law, Rigid, off};
-use crate::material::Material;
+use crate::material::{Damping, Material};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -49,8 +49,8 @@ pub struct Parameters(pub continuum::Parameters);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
     material: Material,
-    /// `D` of each element (N s/m).
-    damping: f64,
+    /// `D` of each element.
+    damping: Damping,
     /// `k` of the stiffest element of the shape model of this material (N/m).
     stiffness: f64,
     /// `μ/4` and `λ/8` (Pa).
@@ -64,12 +64,12 @@ impl TypedModel for Parameters {
         let undamped = Metric::new(body, material, 0.0)?;
         super::material(Some(young), poisson, body)?;
         let damping = super::damping(damping, damping_ratio, undamped.stiffness, body)?;
-        Ok(Arc::new(Metric { damping, ..undamped }))
+        Ok(Arc::new(Metric { damping: Damping::new(damping, body), ..undamped }))
     }
 }
 
 impl Metric {
-    /// The model of a material with the damping constant of each element (N s/m).
+    /// The model of a material with the damping constant of the stiffest element (N s/m).
     ///
     /// # Errors
     /// A body with elements that are no cells of a lattice: others than quadrilaterals in the plane and hexahedra in space, or with a
@@ -103,7 +103,7 @@ impl Metric {
         }
         let stiffness = material.stiffness(body).into_iter().fold(0.0, f64::max);
         let moduli = [0.25 * material.shear(), 0.125 * material.lame(body.dimension)];
-        Ok(Self { material, damping, stiffness, moduli })
+        Ok(Self { material, damping: Damping::new(damping, body), stiffness, moduli })
     }
 }
 
@@ -125,8 +125,9 @@ impl ElasticModel for Metric {
     fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
         let material = Material { young: self.material.young * stiffness, ..self.material };
         let moduli = self.moduli.map(|modulus| modulus * stiffness);
-        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
-        Some(Arc::new(Self { material, damping, stiffness, moduli }))
+        let Damping { most, slope } = self.damping;
+        let damping = Damping { most: most * damping, slope: slope * damping };
+        Some(Arc::new(Self { material, damping, stiffness: self.stiffness * stiffness, moduli }))
     }
 
     fn typed_material(&self) -> Option<Material> {
@@ -134,11 +135,11 @@ impl ElasticModel for Metric {
     }
 
     fn damping(&self) -> f64 {
-        self.damping
+        self.damping.most
     }
 
     fn unusual_choices(&self, _: &Body) -> String {
-        let damping = if self.damping > 0.0 { " of deformation" } else { "" };
+        let damping = if self.damping.most > 0.0 { " of deformation" } else { "" };
         damping.to_owned()
     }
 
@@ -215,6 +216,8 @@ fn change<L: Lanes>(edges: &[[L; 3]; 3], inverse: &[[L; 3]; 3]) -> ([[L; 3]; 3],
 }
 
 impl Law for Metric {
+    /// `D` (N s/m).
+    const OF_ELEMENT: usize = 1;
     /// The inverse of the metric at rest (1/m²): xx, yy, zz, xy, xz, yz. Then the volume of the corner (m³).
     const OF_CORNER: usize = 7;
     /// The force on each corner (N).
@@ -226,12 +229,12 @@ impl Law for Metric {
     }
 
     fn is_damped(&self) -> bool {
-        self.damping > 0.0
+        self.damping.most > 0.0
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, _: &mut [L], of_corner: &mut [L]) {
-        let part = L::splat(1.0 / rest.count() as f64);
+    fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], of_corner: &mut [L]) {
+        let (part, mut whole) = (L::splat(1.0 / rest.count() as f64), L::splat(0.0));
         for corner in 0..rest.count() {
             let [a, b, c] = edges(rest, corner);
             // The inverse of the matrix of edges has these rows, over the volume.
@@ -244,7 +247,9 @@ impl Law for Metric {
                 numbers[at] = squares[at] * inverse;
             }
             numbers[6] = volume.abs() * part;
+            whole = whole + numbers[6];
         }
+        of_element[0] = self.damping.of(rest, whole, axes(rest.count()) as f64);
     }
 
     #[inline(always)]
@@ -272,8 +277,8 @@ impl Law for Metric {
                 }
             }
         }
-        if self.damping > 0.0 {
-            let (motion, damping) = (Rigid::of(element), L::splat(self.damping));
+        if self.damping.most > 0.0 {
+            let (motion, damping) = (Rigid::of(element), element.of_element(0));
             for corner in 0..corners {
                 let (p, v) = element.corner(corner);
                 let off = off(motion, p, v);

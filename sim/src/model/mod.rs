@@ -164,6 +164,13 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
+    /// How many times as much as its stiffness says a body gives way in uniform strain, with a step (s): 1 but for models that are
+    /// [projected](Self::projection).
+    fn softening(&self, body: &Body, step: f64) -> f64 {
+        let _ = (body, step);
+        1.0
+    }
+
     /// A parameter that was given and has no effect on a body, with the reason and the remedy; `None` if all have one.
     #[doc(hidden)]
     fn without_effect(&self, body: &Body) -> Option<Misfit> {

@@ -27,35 +27,15 @@ use crate::fill;
 use crate::kernel::rotation::{Matrix, cross};
 use crate::lanes::each;
 use crate::lists::IndexLists;
-use crate::topology::Springs;
 use glam::{DMat3, DVec3};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The parameters of the model in a scene file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
-pub struct Parameters {
-    /// Elastic constant of each spring, `k_ij` of Eq. (1) (N/m).
+mass_spring::parameters! {
+    /// Bulk modulus `κ`, by which each element resists changes of its volume (Pa; N/m in the plane). Of a cube of side `a` that counts in the
+    /// cycle T as a stiffness of `3κa/2`, of a square as `2κ`, if it is greater than `stiffness`.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub stiffness: f64,
-    /// Bulk modulus `κ`, by which each element resists changes of its volume (Pa; N/m in the plane).
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub bulk: f64,
-    /// Damping constant of each spring, `D_ij` of Eq. (1) (N s/m). Default: 0. Not together with `damping_ratio`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping_ratio: Option<f64>,
-    /// The topology of the springs. Default: the springs that the body lists, else `edges+face-diagonals`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub springs: Option<Springs>,
+    bulk: f64,
 }
 
 /// The model with its parameters in SI units, checked.
@@ -300,6 +280,7 @@ mod tests {
     use crate::integrate::Integrator;
     use crate::state::State;
     use crate::system::Surroundings;
+    use crate::topology::Springs;
     use crate::world::{Stepping, World};
 
     /// A square of 1 m with springs at its sides and diagonals, and a node of 1 kg at each corner.

@@ -2,7 +2,7 @@
 
 use super::support::{Noise, Remembering, floor, free, lattice, mass_spring, shape_based, world};
 use glam::DVec3;
-use localshape_sim::{Body, Dimension, IndexLists, Solids, Springs, State, Surroundings};
+use localshape_sim::{Body, Dimension, FrictionOf, IndexLists, Obstacle, Solids, Springs, State, Surroundings};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -76,7 +76,8 @@ fn rebounds_reach_the_restitution_squared_of_the_height() {
 fn friction_brakes_by_the_impulse_of_the_rebound_and_never_reverses() {
     for (friction, kept) in [(0.0, 3.0), (0.2, 3.0 - 0.2 * 1.5 * 2.0), (10.0, 0.0)] {
         let (mut position, mut velocity) = (DVec3::new(0.0, -0.01, 0.0), DVec3::new(0.0, -2.0, 3.0));
-        floor(0.5, friction).at(0.0, 1.0).rebound(&mut position, &mut velocity, DVec3::ZERO);
+        let paper = Obstacle { friction_of: FrictionOf::Velocity, ..floor(0.5, friction) };
+        paper.at(0.0, 1.0).rebound(&mut position, &mut velocity, DVec3::ZERO);
         assert!((position - DVec3::new(0.0, 0.005, 0.0)).length() < 1e-16);
         assert!((velocity - DVec3::new(0.0, 1.0, kept)).length() < 1e-14, "{friction}: {velocity}");
     }

@@ -113,6 +113,36 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     all
 }
 
+/// A model with twice the stiffness and three times the damping.
+#[test]
+fn scaled_models_have_scaled_forces_and_energies() {
+    for body in bodies() {
+        let flat = |v: DVec3| if body.dimension == Dimension::Plane { v.with_z(0.0) } else { v };
+        let mut noise = Noise(11);
+        let position: Vec<_> = body.rest.iter().map(|&rest| rest + flat(noise.vector()) * 0.05).collect();
+        let (still, velocity) = (State::at_rest(position.clone()), position.iter().map(|_| flat(noise.vector())));
+        let moving = State::new(position.clone(), velocity.collect());
+        for case in cases(&body, 7.0).iter().chain(&cases(&body, 0.0)) {
+            let Some(scaled) = case.model.scaled(2.0, 3.0) else { continue };
+            let [one, other] = [&*case.model, &*scaled].map(|model| {
+                let of = Remembering::new(&body, model, &still);
+                let ((elastic, _), (all, _)) = (of.evaluate(&still), of.evaluate(&moving));
+                (elastic, all, of.report(&still).0.energy.expect("an energy"))
+            });
+            let most = one.0.iter().chain(&one.1).fold(0.0, |most: f64, force| most.max(force.length()));
+            for node in 0..body.len() {
+                let elastic = other.0[node] - one.0[node] * 2.0;
+                let damping = (other.1[node] - other.0[node]) - (one.1[node] - one.0[node]) * 3.0;
+                assert!(
+                    elastic.length() < 1e-12 * most && damping.length() < 1e-12 * most,
+                    "{scaled:?}: {elastic} {damping}"
+                );
+            }
+            assert!((other.2 / one.2 - 2.0).abs() < 1e-12, "{scaled:?}: {} {}", other.2, one.2);
+        }
+    }
+}
+
 /// Whether finite elements take all elements of a body.
 fn is_continuum(body: &Body) -> bool {
     let is_taken = |(kind, nodes): (&ElementKind, &[u32])| match kind {

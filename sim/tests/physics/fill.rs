@@ -1,10 +1,13 @@
 //! Bodies whose elements are filled in part, with stiffness, damping and mass in proportion, or differ in stiffness.
 
 use super::conformance::cases;
-use super::support::{Noise, floor, lattice, mass_spring, shape_based, stepped};
+use super::support::{Noise, Remembering, floor, lattice, mass_spring, shape_based, stepped};
 use glam::DVec3;
 use localshape_sim::geometry::node_volumes;
+use localshape_sim::model::limited_springs::LimitedSprings;
+use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
+use localshape_sim::model::volume_springs::VolumeSprings;
 use localshape_sim::model::{ElasticModel, ModelParameters};
 use localshape_sim::stability::Stability;
 use localshape_sim::{
@@ -79,6 +82,85 @@ fn elements_of_which_all_is_filled_are_full() {
         let far = a.0.iter().zip(&b.0).fold(0.0, |far: f64, (a, b)| far.max(a.distance(*b)));
         assert!(far < 1e-13 && (a.1 / b.1 - 1.0).abs() < 1e-11, "{:?}: {far:e} {} {}", case.model, a.1, b.1);
     }
+}
+
+/// Forces (N) and energy (J) of a model in a state.
+fn evaluated(body: &Arc<Body>, model: &dyn ElasticModel, state: &State) -> (Vec<DVec3>, f64) {
+    let of = Remembering::new(body, model, state);
+    (of.evaluate(state).0, of.report(state).0.energy.expect("an energy"))
+}
+
+/// A body with one of its elements, all of which is filled.
+fn alone(body: &Body, element: usize) -> Arc<Body> {
+    let Body { dimension, rest, mass, elements, .. } = Body::clone(body);
+    let one = [&elements[element]].into_iter().collect();
+    Arc::new(Body::new(dimension, rest, mass, one, Solids::Ordered, None))
+}
+
+/// Every model on a body that is filled in part, beside the sum of its elements, and of its springs, each alone and full. A spring has the mean
+/// part of the elements that hold its nodes.
+#[test]
+fn every_model_is_in_proportion_to_what_is_filled() {
+    let body = filled(3, |cell| [1.0, 0.35, 0.02, 0.8][cell % 4]);
+    let (fill, state) = (body.fill.clone().expect("parts"), start(&body));
+    let full = Arc::new(Body { fill: None, ..Body::clone(&body) });
+    type Sum = (Vec<DVec3>, f64);
+    let add = |sum: &mut Sum, part: f64, (forces, energy): Sum| {
+        sum.0.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force * part);
+        sum.1 += energy * part;
+    };
+    let none = || (vec![DVec3::ZERO; body.len()], 0.0);
+    let of_elements = |model: &dyn ElasticModel| {
+        (0..fill.len()).fold(none(), |mut sum, at| {
+            add(&mut sum, fill[at], evaluated(&alone(&body, at), model, &state));
+            sum
+        })
+    };
+    let springs = mass_spring(&body, 1e4, 7.0, Springs::EdgesFaceDiagonals);
+    let of_springs = |with: &dyn Fn(MassSpring) -> Box<dyn ElasticModel>| {
+        springs.springs.iter().fold(none(), |mut sum, &ends| {
+            let holds = |at: &usize| ends.iter().all(|end| body.elements[*at].contains(end));
+            let parts: Vec<_> = (0..fill.len()).filter(holds).map(|at| fill[at]).collect();
+            let part = parts.iter().sum::<f64>() / parts.len() as f64;
+            let one = with(MassSpring { springs: [ends].into(), ..springs.clone() });
+            add(&mut sum, part, evaluated(&full, &*one, &state));
+            sum
+        })
+    };
+    let compare = |model: &dyn ElasticModel, expected: Sum| {
+        let found = evaluated(&body, model, &state);
+        let most = expected.0.iter().fold(0.0, |most: f64, force| most.max(force.length()));
+        let far = found.0.iter().zip(&expected.0).fold(0.0, |far: f64, (a, b)| far.max(a.distance(*b)));
+        assert!(far < 1e-11 * most, "{model:?}: {far:e} {most}");
+        assert!((found.1 / expected.1 - 1.0).abs() < 1e-11, "{model:?}: {} {}", found.1, expected.1);
+        let [fast, plain] = [Kernel::Fast, Kernel::Reference].map(|kernel| {
+            let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 2e-4) };
+            let mut world = World::new(&body, state.clone(), model, Surroundings::default(), stepping);
+            world.advance(20);
+            world.state().position.clone()
+        });
+        let far = fast.iter().zip(&plain).fold(0.0, |far: f64, (a, b)| far.max(a.distance(*b)));
+        assert!(far < 1e-12, "{model:?}: {far:e}");
+    };
+    for case in cases(&full, 7.0).iter().chain(&cases(&full, 0.0)) {
+        // Models of springs follow.
+        if case.model.springs().is_empty() && !format!("{:?}", case.model).starts_with("Rods") {
+            compare(&*case.model, of_elements(&*case.model));
+        }
+    }
+    let boxed: [&dyn Fn(MassSpring) -> Box<dyn ElasticModel>; 3] = [
+        &|springs| Box::new(springs),
+        &|springs| Box::new(MassSpring { breaks_at: Some(10.0), ..springs }),
+        &|springs| Box::new(LimitedSprings { springs, limit: 0.5 }),
+    ];
+    for with in boxed {
+        compare(&*with(springs.clone()), of_springs(with));
+    }
+    let bulk = 3e4;
+    let mut both = of_springs(&|springs| Box::new(springs));
+    let volumes = VolumeSprings { springs: MassSpring { springs: [].into(), ..springs.clone() }, bulk };
+    add(&mut both, 1.0, of_elements(&volumes));
+    compare(&VolumeSprings { springs, bulk }, both);
 }
 
 /// Each element twice, with parts that are together one, is one full element.

@@ -1,8 +1,12 @@
 //! Kinematic constraints: nodes that are held, gripped, dragged and released.
 
-use super::support::{lattice, shape_based, world};
+use super::conformance::cases;
+use super::support::{bricks, lattice, shape_based, world};
 use glam::{DQuat, DVec3};
-use localshape_sim::{Ease, Grip, Key, Motion, Offset, State, Surroundings};
+use localshape_sim::model::ModelParameters;
+use localshape_sim::{
+    Ease, Grip, Integrator, Kernel, Key, Motion, Offset, State, Status, Stepping, Surroundings, World,
+};
 
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.8, 0.0);
 
@@ -82,6 +86,61 @@ fn one_hand_takes_over_from_another_and_may_pull_far() {
     world.advance(100);
     assert_eq!(world.state().position, drawn, "the second hand holds them where the first has left them");
     world.advance(500);
-    assert_eq!(world.status(), localshape_sim::Status::Ok);
+    assert_eq!(world.status(), Status::Ok);
     assert!(world.state().position[1].distance(drawn[1]) > 1.0, "let go, the body comes back");
+}
+
+/// The nodes of the bottom stay, and those of the top go 0.2 m along x in a second. No node is free, so that no step is too long, and forces
+/// as large as those of a body sheared to `γ` = 2 move nothing.
+#[test]
+fn nodes_that_are_held_have_no_speed_of_their_own() {
+    let body = bricks([3, 1, 2], DVec3::splat(0.1));
+    let side = |y: f64| (0..body.len() as u32).filter(|&node| body.rest[node as usize].y == y).collect::<Vec<_>>();
+    let end = Offset { shift: DVec3::X * 0.2, rotation: DVec3::ZERO };
+    let keys = vec![Key { time: 0.0, offset: Offset::default() }, Key { time: 1.0, offset: end }];
+    let motion = Motion::Keys { keys, ease: Ease::Smooth, repeat: false };
+    let grips = vec![
+        Grip { nodes: side(0.0), from: 0.0, until: f64::INFINITY, motion: Motion::Still },
+        Grip { nodes: side(0.1), from: 0.0, until: f64::INFINITY, motion },
+    ];
+    let around = Surroundings { grips, ..Surroundings::default() };
+    let stiff = serde_json::json!({ "kind": "metric", "young": 1e5, "poisson": 0.49 });
+    let stiff: ModelParameters = serde_json::from_value(stiff).expect("a model");
+    let stiff = stiff.resolve(&body, None).expect("it fits");
+    let integrators = [
+        Integrator::SemiImplicitEuler,
+        Integrator::ExplicitEuler,
+        Integrator::VelocityVerlet,
+        Integrator::Pefrl,
+        Integrator::RungeKutta,
+        Integrator::DormandPrince,
+        Integrator::BackwardEuler,
+    ];
+    let cases = cases(&body, 0.0);
+    // Other models a thousand times as stiff as their step bears.
+    let scaled: Vec<_> = cases.iter().filter_map(|case| case.model.scaled(1e6, 1.0)).collect();
+    for model in scaled.iter().map(|model| &**model).chain([&*stiff]) {
+        let takes = |integrator: &Integrator| integrator.refusal(model, &body).is_none();
+        for (integrator, kernel) in integrators
+            .into_iter()
+            .filter(takes)
+            .flat_map(|integrator| [(integrator, Kernel::Fast), (integrator, Kernel::Reference)])
+        {
+            let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-2) };
+            let mut world = World::new(&body, State::at_rest(body.rest.clone()), model, around.clone(), stepping);
+            world.advance(100);
+            let text = format!("{integrator:?} {kernel:?} {model:?}");
+            assert_eq!(world.status(), Status::Ok, "{text}");
+            for (now, rest) in world.state().position.iter().zip(&body.rest) {
+                assert!(now.distance(*rest + DVec3::X * (2.0 * rest.y)) < 1e-14, "{text}");
+            }
+        }
+    }
+    // W = μ/4 (2γ² + γ⁴) + λ/8 γ⁴.
+    let mut world = world(&body, State::at_rest(body.rest.clone()), &*stiff, 1e-3, around);
+    world.advance(1000);
+    let (shear, ratio) = (1e5 / (2.0 * 1.49), 2.0 * 0.49 / (1.0 - 2.0 * 0.49));
+    let density = shear * (0.25 * (2.0 * 4.0 + 16.0) + 0.125 * ratio * 16.0);
+    let found = world.diagnostics().elastic / 0.006;
+    assert!((found / density - 1.0).abs() < 1e-12, "{found} {density}");
 }

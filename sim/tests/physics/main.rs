@@ -12,6 +12,7 @@ mod example_model;
 mod figures;
 mod fill;
 mod grips;
+mod implicit;
 mod integrators;
 mod masses;
 mod material;

@@ -3,9 +3,10 @@
 use super::support::{self, Noise, Remembering, bricks, forces, settled};
 use glam::{DMat3, DVec3};
 use localshape_sim::geometry::volumes_at_rest;
-use localshape_sim::model::ElasticModel;
 use localshape_sim::model::shape_based::ShapeBased;
-use localshape_sim::{Body, Dimension, Material, State};
+use localshape_sim::model::{ElasticModel, ModelParameters};
+use localshape_sim::{Body, Dimension, Material, Solids, Springs, State};
+use serde_json::json;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -259,5 +260,97 @@ fn plane_waves_have_the_speeds_of_the_material() {
                 }
             }
         }
+    }
+}
+
+/// What scenes are told to write for springs of a given `E`: the energies of a stretch along the six axes of an icosahedron, whose mean is that
+/// over all directions, are those of a material with `ν = 1/4`, `(1.2 E/2) ε²`.
+#[test]
+fn springs_have_the_modulus_of_their_lengths() {
+    const YOUNG: f64 = 2e5;
+    const SMALL: f64 = 1e-6;
+    let cubes = cubes([3, 2, 2]);
+    let mut tetrahedra = localshape_sim::IndexLists::default();
+    for cell in cubes.elements.iter() {
+        for [a, b] in [[1, 3], [3, 2], [2, 6], [6, 4], [4, 5], [5, 1]] {
+            tetrahedra.push(&[0, a, b, 7].map(|corner| cell[corner]));
+        }
+    }
+    let (rest, mass) = (cubes.rest.clone(), cubes.mass.clone());
+    let tetrahedra = Arc::new(Body::new(Dimension::Space, rest, mass, tetrahedra, Solids::Ordered, None));
+    for (body, named) in
+        [(&cubes, Springs::EdgesFaceDiagonals), (&cubes, Springs::EdgesOneDiagonal), (&tetrahedra, Springs::Edges)]
+    {
+        let volume: f64 = volumes_at_rest(body).iter().sum();
+        let springs = support::mass_spring(body, 1.0, 0.0, named).springs;
+        let squared = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length_squared();
+        let stiffness = 6.0 * YOUNG * volume / springs.iter().map(squared).sum::<f64>();
+        let model = support::mass_spring(body, stiffness, 0.0, named);
+        let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+        let axes = [1.0, -1.0].into_iter().flat_map(|one| [[0.0, one, golden], [one, golden, 0.0], [golden, 0.0, one]]);
+        let mean = axes
+            .map(|axis| DVec3::from_array(axis).normalize())
+            .map(|n| energy(body, &model, body.rest.iter().map(|&at| at + n * (n.dot(at) * SMALL)).collect()));
+        let density = mean.sum::<f64>() / 6.0 / volume;
+        assert!((density / (0.6 * YOUNG * SMALL * SMALL) - 1.0).abs() < 1e-5, "{named:?}: {density}");
+    }
+}
+
+/// Two tetrahedra, of which a node of the small one moves: each is damped in proportion to its elastic constant, whatever the model. With
+/// `stiffness` both have the same.
+#[test]
+fn damping_is_in_proportion_to_the_stiffness_of_elements() {
+    const DAMPING: f64 = 3.0;
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.25, 0.25, -0.25]];
+    let both = support::body(Dimension::Space, &corners, &[&[0, 1, 2, 3], &[0, 2, 1, 4]]);
+    let small = support::body(Dimension::Space, &corners, &[&[0, 2, 1, 4]]);
+    let [large, low] = Material { young: 1e3, poisson: 0.0 }.stiffness(&both)[..] else { panic!("two elements") };
+    assert!((large - 222.2).abs() < 0.1 && (low - 89.9).abs() < 0.1, "{large} {low}");
+    let mut moving = State::at_rest(both.rest.clone());
+    moving.velocity[4] = DVec3::Z;
+    let force = |body: &Arc<Body>, parameters: serde_json::Value| {
+        let parameters: ModelParameters = serde_json::from_value(parameters).expect("a model");
+        forces(body, &*parameters.resolve(body, None).expect("it fits"), &moving)[4]
+    };
+    let of = |kind: &str, key: &str| json!({ "kind": kind, key: 1e3, "damping": DAMPING });
+    // −3 (1 − 1/4) N.
+    let [given, material] = ["stiffness", "young"].map(|key| force(&both, of("shape-based", key)).z);
+    assert!((given + 2.25).abs() < 1e-12 && (material + 2.25 * low / large).abs() < 1e-12, "{given} {material}");
+    for kind in ["linear", "corotational", "neo-hookean"] {
+        let [found, alone] = [&both, &small].map(|body| force(body, of(kind, "young")));
+        assert!(alone.length() > 0.1 && (found - alone * (low / large)).length() < 1e-12, "{kind}: {found} {alone}");
+    }
+    // Cells of a lattice, one of them half as long: k = 6 μ V/Σ|R0|².
+    let corners: Vec<_> = (0..12).map(|at| [[0.0, 1.0, 1.5][at % 3], (at / 3 % 2) as f64, (at / 6) as f64]).collect();
+    let cells = [0, 1].map(|x: u32| [0, 1, 3, 4, 6, 7, 9, 10].map(|node| node + x));
+    let both = support::body(Dimension::Space, &corners, &[&cells[0], &cells[1]]);
+    let half = support::body(Dimension::Space, &corners, &[&cells[1]]);
+    let [large, low] = Material { young: 1e3, poisson: 0.0 }.stiffness(&both)[..] else { panic!("two elements") };
+    let mut moving = State::at_rest(both.rest.clone());
+    moving.velocity[2] = DVec3::new(1.0, 0.5, 0.2);
+    for kind in ["metric", "linear", "corotational", "neo-hookean"] {
+        let [found, alone] = [&both, &half].map(|body| {
+            let parameters: ModelParameters = serde_json::from_value(of(kind, "young")).expect("a model");
+            forces(body, &*parameters.resolve(body, None).expect("it fits"), &moving)[2]
+        });
+        assert!(alone.length() > 0.1 && (found - alone * (low / large)).length() < 1e-12, "{kind}: {found} {alone}");
+    }
+}
+
+/// The cycle of springs with volumes has the stiffness of an element against changes of its volume, `3κa/2` of a cube and `2κ` of a square, if that
+/// is greater than a spring's; the damping ratio has that of the springs.
+#[test]
+fn volumes_count_in_the_cycle_and_not_in_the_damping_ratio() {
+    let cubes = bricks([2, 1, 1], DVec3::splat(SIDE));
+    let cubes = Arc::new(Body { mass: vec![0.01; cubes.len()], ..Body::clone(&cubes) });
+    let square = [[0.0; 3], [SIDE, 0.0, 0.0], [SIDE, SIDE, 0.0], [0.0, SIDE, 0.0]];
+    let square = support::body(Dimension::Plane, &square, &[&[0, 1, 2, 3]]);
+    for (body, bulk, stiffest) in [(&cubes, 1e4, 1500.0), (&cubes, 1e3, 500.0), (&square, 1e3, 2000.0)] {
+        let parameters = json!({ "kind": "volume-springs", "stiffness": 500.0, "bulk": bulk, "damping_ratio": 0.1 });
+        let parameters: ModelParameters = serde_json::from_value(parameters).expect("a model");
+        let model = parameters.resolve(body, None).expect("it fits");
+        let cycle = 2.0 * PI * (body.mass[0] / stiffest).sqrt();
+        assert!((model.shortest_period(body) / cycle - 1.0).abs() < 1e-12, "{bulk}: {}", model.shortest_period(body));
+        assert!((model.damping() / (0.2 * (500.0 * body.mass[0]).sqrt()) - 1.0).abs() < 1e-12, "{}", model.damping());
     }
 }

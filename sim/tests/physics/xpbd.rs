@@ -2,8 +2,9 @@
 
 use super::conformance::bodies;
 use super::shape_matching::goals;
-use super::support::{Noise, floor, free, lattice, shape_based, stepped, world};
+use super::support::{Noise, bricks, floor, free, lattice, shape_based, stepped, world};
 use glam::DVec3;
+use localshape_sim::model::ElasticModel;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::xpbd::Xpbd;
 use localshape_sim::stability::Stability;
@@ -94,6 +95,27 @@ fn a_body_hangs_as_low_as_the_shape_model() {
     let sag = body.rest[0].y - exact.state().position[0].y;
     assert!(errors[2].abs() < 0.03 * sag, "{errors:?} of {sag}");
     assert!(errors[1].abs() < 0.4 * errors[0].abs() && errors[2].abs() < 0.4 * errors[1].abs(), "{errors:?}");
+}
+
+/// A bar that hangs, of ten cubes: its end is `ρgL²/2E` = 0.049 m lower, and with long steps by the predicted factor more.
+#[test]
+fn long_steps_give_way_as_predicted() {
+    let cubes = bricks([1, 10, 1], DVec3::splat(0.1));
+    let mut mass = vec![0.0; cubes.len()];
+    cubes.elements.iter().flatten().for_each(|&node| mass[node as usize] += 0.125);
+    let body = Arc::new(Body { mass, ..Body::clone(&cubes) });
+    let nodes = (0..body.len() as u32).filter(|&node| body.rest[node as usize].y > 0.99).collect();
+    let grips = vec![Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still }];
+    let around = Surroundings { gravity: GRAVITY, grips, ..Surroundings::default() };
+    let model = Xpbd::new(ShapeBased::new(5e3));
+    for step in [1.0 / 60.0, 1.0 / 120.0, 1.0 / 300.0] {
+        let mut world = world(&body, State::at_rest(body.rest.clone()), &model, step, around.clone());
+        world.advance((60.0 / step) as u64);
+        let excess = -world.state().position[0].y / 0.049 - 1.0;
+        let predicted = model.softening(&body, step) - 1.0;
+        assert!((excess / predicted - 1.0).abs() < 0.15, "{step}: {excess} {predicted}");
+    }
+    assert_eq!(ShapeBased::new(5e3).softening(&body, 1.0), 1.0);
 }
 
 #[test]

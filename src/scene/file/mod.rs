@@ -76,7 +76,8 @@ pub(in crate::scene) struct TimeFile {
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
     /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
-    /// the mass of the lightest node and the largest stiffness of all bodies and runs. `"auto"` takes equal steps between two
+    /// the mass of the lightest node and the largest stiffness of all bodies and runs; of `volume-springs` that of a spring or that of
+    /// an element against changes of its volume. `"auto"` takes equal steps between two
     /// frames, at most half of the largest step that is predicted to be stable for every run without a step of its own.
     /// `localshape check` prints that prediction. `xpbd`, stable with any step, takes at most 1/1200 s.
     #[schemars(extend("default" = "T/50"))]

@@ -511,10 +511,10 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
     }
 }
 
-/// Warns of steps near or above the largest stable one, and of integrators that are never stable.
+/// Warns of steps near or above the largest stable one, or with which bodies are soft, and of integrators that are never stable.
 fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
     for run in 0..scene.runs.len() {
-        if let Some([message, help]) = scene.near_limit(run) {
+        for [message, help] in scene.near_limit(run).into_iter().chain(scene.softened(run)) {
             let own = key_path!["run", run, "step"];
             let path = if report.is_typed(&own) { own.to_vec() } else { key_path!["time", "step"].to_vec() };
             report.warn(&path, message, help);

@@ -122,6 +122,7 @@ impl Walk<'_, '_, '_> {
                 if others.is_empty() { known } else { format!("`{name}` belongs to {others}; {known}") }
             }
         };
+        let help = schema["x-instead"][name].as_str().map_or(help, str::to_owned);
         self.mistake(span, format!("unknown key `{}`{place}", shortened(name)), Some(help));
     }
 }

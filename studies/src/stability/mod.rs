@@ -120,7 +120,7 @@ pub(crate) fn usual(models: &[String]) -> Scene {
         time.duration = 2
         body = {{ lattice = {{ cells = [3, 3, 3], side = 0.1 }}, velocity = [0, -9.899495, 0], lowest = 0, \
             rotation = {{ axis = [1, 0, 1], angle = 0.028284 }} }}
-        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3, friction_of = 'velocity' }}]
         run = [{}]",
         runs.join(",\n")
     );

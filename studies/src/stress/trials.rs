@@ -131,7 +131,7 @@ fn pressed() -> Trial {
         pivot: DVec3::ZERO,
         restitution: 0.0,
         friction: 0.5,
-        friction_of: FrictionOf::default(),
+        friction_of: FrictionOf::Velocity,
     };
     let elastic = Elastic { over_mass: 1e5, ..USUAL };
     let name = "to a tenth of the height".to_owned();
@@ -272,7 +272,7 @@ fn lattice(cells: u32, side: f64, mass: f64) -> Body {
 
 fn floor(height: f64, restitution: f64, friction: f64) -> Obstacle {
     let shape = Shape::Floor { normal: DVec3::Y, height };
-    let friction_of = FrictionOf::default();
+    let friction_of = FrictionOf::Velocity;
     Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction, friction_of }
 }
 

@@ -43,7 +43,7 @@ fn with(kind: &str, suffix: &str) -> Vec<Subject> {
                 time.duration = 0.06
                 body = {{ lattice = {{ cells = [2, 2, 2], side = 0.1 }}, velocity = [0, -1, 0], lowest = 0.03, \
                          rotation = {{ axis = [1, 0.3, 2], angle = 0.4 }} }}
-                obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+                obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3, friction_of = 'velocity' }}]
                 {free}"
             ),
             None,

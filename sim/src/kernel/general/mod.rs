@@ -346,10 +346,14 @@ impl<W: Law> General<W> {
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// The lower of two nodes: `one`, and the first of the lanes whose bits are set.
+/// The lower of two nodes: `one`, and the first of the lanes whose bits are set and that is not held.
 #[inline(always)]
-pub(super) fn first_of(one: u32, lanes: u32, index: impl Fn(usize) -> u32) -> u32 {
-    if lanes == 0 { one } else { (0..MOST).filter(|lane| lanes >> lane & 1 == 1).map(index).fold(one, u32::min) }
+pub(super) fn first_of(one: u32, lanes: u32, held: &[bool], index: impl Fn(usize) -> u32) -> u32 {
+    if lanes == 0 {
+        return one;
+    }
+    let free = |&node: &u32| held.get(node as usize) != Some(&true);
+    (0..MOST).filter(|lane| lanes >> lane & 1 == 1).map(index).filter(free).fold(one, u32::min)
 }
 
 impl<W: Law> Stepper for General<W> {

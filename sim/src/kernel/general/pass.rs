@@ -57,7 +57,7 @@ impl<W: Law> Work for OnePart<'_, W> {
                 let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
                 let lanes = own.advance(|lane| records.add((first + lane) * RECORD), [x, y, z], accelerations);
-                lost = first_of(lost, lanes, |lane| part.index[first + lane]);
+                lost = first_of(lost, lanes, self.around.held, |lane| part.index[first + lane]);
             }
         }
         // Zeros for the next part, and sums for `SharedNodes`. The last row belongs to lanes without an element.
@@ -182,7 +182,7 @@ impl Work for SharedNodes<'_> {
                 let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
                 let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let lanes = own.advance(|lane| rows[lane], [x, y, z], accelerations);
-                lost = first_of(lost, lanes, |lane| shared.index[first + lane]);
+                lost = first_of(lost, lanes, around.held, |lane| shared.index[first + lane]);
                 for (lane, row) in rows.iter().enumerate().take(L::WIDTH) {
                     for place in places(lane).iter().skip(1) {
                         record(place).copy_from_nonoverlapping(*row, RECORD);

@@ -156,6 +156,7 @@ pub(super) const FREE: Around<'_> = Around {
     resolve: &|_, _, _, _| {},
     floor: None,
     grips: None,
+    held: &[],
     meet: None,
     speed_limit: &|_| f64::MAX,
 };

@@ -8,6 +8,7 @@ use super::modes::{bits, of_slopes, slope_at, slopes, sums_and_differences, sums
 use crate::body::Body;
 use crate::lanes::Lanes;
 use crate::law::{Corners, Element, Law, Rigid, off};
+use crate::material::Damping;
 use std::marker::PhantomData;
 
 /// The law of elements in `D` dimensions with so many corners at most: four in the plane; in space eight, or four if all are tetrahedra.
@@ -17,8 +18,8 @@ pub(super) struct Elements<S, const D: usize, const CORNERS: usize> {
     pub(super) shear: f64,
     /// `λ` (Pa).
     pub(super) lame: f64,
-    /// `D` (N s/m).
-    pub(super) damping: f64,
+    /// `D` of each element.
+    pub(super) damping: Damping,
     /// Whether all elements are [affine](is_affine).
     pub(super) is_affine: bool,
     pub(super) of: PhantomData<S>,
@@ -29,6 +30,8 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
     const HAS_BOXES: bool = CORNERS == 1 << D;
     /// How many numbers the different [`slopes`] of a box are.
     const SLOPES: usize = CORNERS / 2 * D * D;
+    /// The place of `D` (N s/m) among the constants.
+    const DAMPING: usize = if Self::HAS_BOXES { Self::SLOPES + CORNERS } else { D * D + 1 };
 
     /// The cofactors of the gradient of an element from its parent, and one over its determinant.
     #[inline(always)]
@@ -170,8 +173,8 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
 
 impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, CORNERS> {
     /// Of an affine element the cofactors of its gradient and one over its determinant; else its slopes (m), and one over the determinant at
-    /// each point.
-    const OF_ELEMENT: usize = if Self::HAS_BOXES { Self::SLOPES + CORNERS } else { D * D + 1 };
+    /// each point. Then its damping.
+    const OF_ELEMENT: usize = Self::DAMPING + 1;
     /// The forces on the corners (N).
     type Whole<L: Lanes> = [[L; D]; CORNERS];
 
@@ -181,7 +184,7 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
     }
 
     fn is_damped(&self) -> bool {
-        self.damping > 0.0
+        self.damping.most > 0.0
     }
 
     #[inline(always)]
@@ -204,15 +207,18 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
             }
             sums_and_differences(&mut modes);
             if !self.is_affine {
-                let rest = slopes(&modes);
+                let (of_modes, mut volume) = (slopes(&modes), zero);
                 for point in 0..CORNERS {
-                    let gradient = slope_at(&rest, point);
+                    let gradient = slope_at(&of_modes, point);
                     for axis in 0..D {
                         let at = (axis * CORNERS / 2 + without(point, axis)) * D;
                         of_element[at..at + D].copy_from_slice(&gradient[axis]);
                     }
-                    of_element[Self::SLOPES + point] = Self::parent(&gradient).1;
+                    let over = Self::parent(&gradient).1;
+                    of_element[Self::SLOPES + point] = over;
+                    volume = volume + L::splat(Self::BOX) / over;
                 }
+                of_element[Self::DAMPING] = self.damping.of(rest, volume, D as f64);
                 return;
             }
             for axis in 0..D {
@@ -226,13 +232,15 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
             }
         }
         of_element[D * D] = over;
+        let size = if rest.count() == D + 1 { Self::SIMPLEX } else { Self::BOX * CORNERS as f64 };
+        of_element[Self::DAMPING] = self.damping.of(rest, L::splat(size) / over, D as f64);
     }
 
     #[inline(always)]
     fn whole<L: Lanes>(&self, element: &Element<'_, L>) -> [[L; D]; CORNERS] {
         let (mut forces, _) = self.evaluate::<L, false>(element);
-        if self.damping > 0.0 {
-            let (rigid, d) = (Rigid::of(element), L::splat(self.damping));
+        if self.damping.most > 0.0 {
+            let (rigid, d) = (Rigid::of(element), element.of_element(Self::DAMPING));
             for corner in 0..element.corners() {
                 let (p, v) = element.corner(corner);
                 let off = off(rigid, p, v);

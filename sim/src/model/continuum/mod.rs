@@ -11,7 +11,8 @@
 //! Masses are those of the nodes. In the plane a material is a sheet of unit thickness under plane stress, and `λ` is
 //! [that of the sheet](Material::lame).
 //!
-//! A node is damped by `−D` times its velocity without the rigid motion that fits its element best.
+//! A node is damped by `−D` times its velocity without the rigid motion that fits its element best, with `D` in proportion to the elastic
+//! constant that the element has in the shape model.
 
 mod elements;
 mod map;
@@ -25,7 +26,7 @@ use super::{ByLaw, ElasticModel, ForceModel, Lanes, Misfit, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::kernel::{Compiled, Conditions};
-use crate::material::Material;
+use crate::material::{Damping, Material};
 use crate::volume::volumes_at_rest;
 use elements::Elements;
 use glam::{DMat3, DVec3};
@@ -49,8 +50,8 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 0.5))]
     pub poisson: Option<f64>,
-    /// Damping constant of each element (N s/m): of the velocities of its nodes without its rigid motion. Default: 0. Not together with
-    /// `damping_ratio`.
+    /// Damping constant of the stiffest element (N s/m): of the velocities of its nodes without its rigid motion. Others have it in proportion
+    /// to their elastic constants in the shape model. Default: 0. Not together with `damping_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping: Option<f64>,
@@ -109,7 +110,7 @@ pub(in crate::model) struct FiniteElements<S> {
     material: Material,
     /// The greatest elastic constant of the shape model for it (N/m).
     stiffness: f64,
-    /// Damping constant `D` of each element (N s/m).
+    /// Damping constant `D` of the stiffest element (N s/m).
     damping: f64,
     of: PhantomData<S>,
 }
@@ -161,7 +162,7 @@ impl<S: Stress> FiniteElements<S> {
     fn law<const D: usize, const CORNERS: usize>(&self, body: &Body) -> Elements<S, D, CORNERS> {
         let (shear, lame) = (self.material.shear(), self.material.lame(body.dimension));
         let is_affine = body.elements.iter().all(|nodes| is_affine(body, nodes));
-        Elements { shear, lame, damping: self.damping, is_affine, of: PhantomData }
+        Elements { shear, lame, damping: Damping::new(self.damping, body), is_affine, of: PhantomData }
     }
 }
 

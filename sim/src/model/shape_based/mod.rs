@@ -63,7 +63,8 @@ pub struct Parameters {
     /// the material at any number of cells; the paper's model is stiffer. Default: 1, the paper's model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending: Option<Ratio>,
-    /// Damping constant of each element, `D_e` of Eq. (4) (N s/m). Default: 0. Not together with `damping_ratio`.
+    /// Damping constant of each element, `D_e` of Eq. (4) (N s/m). Where elements differ in stiffness, as with `young`, it is that of the stiffest
+    /// one, and others have it in proportion. Default: 0. Not together with `damping_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping: Option<f64>,
@@ -109,7 +110,7 @@ pub struct ShapeBased {
     pub material: Option<Material>,
     /// A factor `β` of the part of displacements that is not affine, from 0 to 1.
     pub bending: f64,
-    /// Damping constant `D_e` of each element (N s/m).
+    /// Damping constant `D_e` of each element (N s/m), with a material of the stiffest one.
     pub damping: f64,
     /// Number of passes at each evaluation of the forces. A pass solves Eq. (15) once.
     pub passes: u32,
@@ -182,8 +183,7 @@ impl ElasticModel for ShapeBased {
     }
 
     fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
-        Some(Arc::new(ShapeBased { stiffness, damping, ..self.clone() }))
+        Some(Arc::new(self.times(stiffness, damping)))
     }
 
     fn damping(&self) -> f64 {
@@ -418,7 +418,7 @@ impl ShapeBased {
     }
 
     /// The relative stiffness of each element, as far as it is filled; `None` if all are 1.
-    fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
+    pub(in crate::model) fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
         /// Equal stiffnesses differ by round-off only.
         const EQUAL: f64 = 1e-10;
         let own = self.material.map(|material| {
@@ -427,6 +427,13 @@ impl ShapeBased {
         });
         let relative = own.as_ref().map_or(body.stiffness.as_deref(), |own| own.as_deref());
         fill::product(body.fill.as_deref(), relative)
+    }
+
+    /// This model with its stiffness and its damping multiplied.
+    pub(in crate::model) fn times(&self, stiffness: f64, damping: f64) -> Self {
+        let material = self.material.map(|of| Material { young: of.young * stiffness, ..of });
+        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
+        Self { stiffness, material, damping, ..self.clone() }
     }
 
     /// The options that the paper's model does not have.

@@ -2,6 +2,7 @@
 
 use super::Sweep;
 use crate::kernel::damped::{DEFORMING, NONE, RELATIVE};
+use crate::kernel::general::{NONE as NOBODY, first_of};
 use crate::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
 use crate::kernel::rotation::{Moments, Solver, choose, cross, matrix, turn, turned_back};
 use crate::kernel::update::{NodeUpdate, NodeVector};
@@ -551,7 +552,11 @@ impl Sweep<'_> {
                 });
                 let lost = update.go(&mut nodes, total, inverse_mass(to));
                 if lost != 0 {
-                    return Some(plane * self.grid.layer() + at + lost.trailing_zeros() as usize);
+                    let index = |lane: usize| (plane * self.grid.layer() + at + lane) as u32;
+                    let first = first_of(NOBODY, lost, self.around.held, index);
+                    if first != NOBODY {
+                        return Some(first as usize);
+                    }
                 }
                 near |= update.near(&nodes);
                 thrice!(axis => {
