@@ -89,7 +89,7 @@ impl Animation<'_> {
     }
 
     fn write_into(&self, format: Format, path: &Path) -> Result<Written, AnimationError> {
-        let mut file = AtomicFile::create(path)?;
+        let mut file = AtomicFile::create_anew(path)?;
         let written = match format {
             Format::Mp4 | Format::WebM => ffmpeg::write(self, format, &file)?,
             Format::Apng => buffered(&mut file, |out| apng::write(self, out))?,

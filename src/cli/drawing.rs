@@ -8,8 +8,8 @@ use super::{animate, interrupt};
 use crate::animation::Format;
 use crate::gpu::{Gpu, GpuError, adapter_name};
 use crate::output::{
-    Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn, read_tags,
-    temporary_folder,
+    Clock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn,
+    passing_frames, read_tags,
 };
 use crate::picture::{Composer, Picture};
 use crate::render::{Pending, RenderError, Renderer};
@@ -19,7 +19,6 @@ use crate::sim::{Diagnostic, Frame, RunFrame, Snapshot};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tempfile::TempDir;
 
 /// The device and the settings for the pictures of all scenes.
 pub(super) struct Device {
@@ -63,8 +62,6 @@ pub(super) struct Drawing<'a> {
     /// The requested frames, and their folder.
     frames: Vec<u64>,
     folder: PathBuf,
-    /// The folder, if frames are not kept.
-    temporary: Option<TempDir>,
     adapter: String,
     compose_time: Spent,
     draw_time: Spent,
@@ -94,8 +91,8 @@ impl<'a> Drawing<'a> {
         folder: &Path,
         frames: &[u64],
     ) -> Result<Self, Failure> {
-        let temporary = (!device.keep).then(|| temporary_folder(folder)).transpose()?;
-        let folder = temporary.as_ref().map_or(folder, TempDir::path);
+        let folder = if device.keep { folder.to_owned() } else { passing_frames(folder) };
+        std::fs::create_dir_all(&folder).map_err(OutputError::writing(&folder))?;
         let writers = device.threads.min(MOST_WRITERS);
         Ok(Self {
             scene,
@@ -106,13 +103,12 @@ impl<'a> Drawing<'a> {
             begun: None,
             last: None,
             repeated: 0,
-            drawn_before: device.resume.then(|| folder.to_owned()),
+            drawn_before: device.resume.then(|| folder.clone()),
             kept: 0,
-            writer: FrameWriter::new(folder, writers),
+            writer: FrameWriter::new(&folder, writers),
             device: Arc::clone(device),
             frames: frames.to_vec(),
-            folder: folder.to_owned(),
-            temporary,
+            folder,
             adapter: adapter_name(device.gpu.as_ref().filter(|_| scene.is_lit())),
             compose_time: Spent::default(),
             draw_time: Spent::default(),
@@ -192,9 +188,9 @@ impl<'a> Drawing<'a> {
             let path = film.1.display();
             let (why, of) =
                 if are_there { ("it was interrupted", "") } else { ("frames are missing", " from the others") };
-            let how = match self.temporary {
-                Some(_) => String::new(),
-                None => format!("; to make it{of}: localshape animate {} -o {path}", self.folder.display()),
+            let how = match self.device.keep {
+                true => format!("; to make it{of}: localshape animate {} -o {path}", self.folder.display()),
+                false => String::new(),
             };
             Ok(format!("{path}  not made, because {why}{how}\n"))
         };

@@ -166,7 +166,7 @@ impl FigureCommand {
     /// Makes one figure, ready to be written, and returns it with its numbers; `None` if it was interrupted. Before the
     /// work, checks that its file can be written.
     fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<(Made, Value)>, Failure> {
-        let file = AtomicFile::create(path)?;
+        let file = AtomicFile::create_anew(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
         figure.scenes().iter().try_for_each(Scene::check_recordings).map_err(OutputError::reading(path))?;
         let [width, height] = figure.size;

@@ -22,9 +22,9 @@ pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
     format!("{path}  {width}×{height}, {made}{of} in {duration:.2} s, {}\n", DecimalBytes(bytes))
 }
 
-/// The comment of an animation.
+/// The comment of an animation. It is the same for a command that goes on after an interruption.
 pub(super) fn comment(words: &[OsString], scene: &str) -> String {
-    let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).filter(|word| word != "--resume").collect();
     let version = env!("CARGO_PKG_VERSION");
     let scene = if scene.is_empty() { String::new() } else { format!("scene {scene}; ") };
     format!("{MARK}{version}; {scene}command: {}", command.join(" "))

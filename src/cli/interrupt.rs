@@ -2,6 +2,8 @@
 //! checkpoint, and the command ends.
 
 use super::failure::Status;
+#[cfg(unix)]
+use std::sync::Arc;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -23,6 +25,12 @@ pub(super) fn listen() {
             is_ctrl_c && first.elapsed() >= MOMENT
         });
     });
+}
+
+/// Makes a write fail that exceeds a limit on the size of files, in place of a signal that ends the program.
+pub(super) fn outlive_file_limits() {
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
 }
 
 /// Signals within this time of the first are one request.

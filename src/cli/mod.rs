@@ -104,6 +104,7 @@ enum Command {
 /// first scene.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<_> = words.into_iter().collect();
+    interrupt::outlive_file_limits();
     let status = match Cli::try_parse_from(&words) {
         Ok(cli) => cli.command.run(&words).unwrap_or_else(Failure::report),
         // Help and version are such errors, too. If printing fails, there is nowhere to report it.

@@ -2,19 +2,20 @@
 
 use super::failure::{Failure, Status, note, with_causes};
 use super::options::{PrintOptions, RunOptions};
-use super::results::{Pace, Pictures, Results};
+use super::results::{Pace, Pictures, Results, series};
 use super::scenes::{Job, with_option};
 use super::{console, interrupt, report};
 use crate::output::export::Export;
 use crate::output::{
     Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
-    Spent, StatesWriter, Summary, Timings, open_growing, thread_time, waiting_states,
+    Spent, StatesWriter, Summary, Timings, thread_time, waiting_states,
 };
 use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
+use crate::runner::growing::Growing;
 use crate::runner::{Frames, Next, Progress, Runner, Stored};
 use crate::scene::{Run, Scene};
-use crate::sim::{self, Frame, State};
+use crate::sim::{self, Diagnostic, Frame, State};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::error::Error;
@@ -59,7 +60,7 @@ pub(super) fn run_all(
         summary.set = settings.iter().map(|setting| setting.text().to_owned()).collect();
         summary.adapter = pictures.map(|(adapter, _)| adapter(&job.scene));
         // Frames that are not kept count as simulated only.
-        summary.frames.size = job.folder.contents().0.size;
+        summary.frames.size = job.folder.contents().0.kept_size();
         summary.frames.written = summary.frames.size.map(|_| 0);
         result = record(job, &mut summary, &pool, options, pictures.map(|(_, begin)| begin));
         if options.printing.json {
@@ -68,8 +69,7 @@ pub(super) fn run_all(
             documents.push(document);
         } else if !options.printing.quiet && result.is_ok() {
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
-            // Frames that are not kept cannot be continued.
-            if summary.outcome == Outcome::Interrupted && (pictures.is_none() || summary.frames.size.is_some()) {
+            if summary.outcome == Outcome::Interrupted {
                 console::print(&format!("to go on: {}\n", with_option(words, "--resume")))?;
             }
         }
@@ -172,8 +172,10 @@ impl<'a> Recording<'a> {
             return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
         }
         let (progress, rows, course) = match checkpoint {
-            Some(Checkpoint { progress, causes, rows, course, .. }) => {
-                self.summary.runs.iter_mut().zip(causes).for_each(|(run, cause)| run.cause = cause);
+            Some(Checkpoint { progress, causes, extremes, rows, course, .. }) => {
+                for ((run, cause), extremes) in self.summary.runs.iter_mut().zip(causes).zip(extremes) {
+                    (run.cause, run.extremes) = (cause, extremes);
+                }
                 (Some(progress), rows, course)
             }
             None => (None, None, None),
@@ -181,7 +183,12 @@ impl<'a> Recording<'a> {
         let is_shard = self.folder.is_shard();
         let diagnostics = match rows {
             _ if is_shard => None,
-            Some(rows) => Some(DiagnosticsWriter::resume(folder, scene, rows).map_err(|error| self.unusable(&error))?),
+            Some(rows) => {
+                let taken = progress.as_ref().map_or(0, |progress| progress.taken);
+                let last = self.frames.get(..taken).and_then(<[_]>::last).copied();
+                let resumed = DiagnosticsWriter::resume(folder, scene, rows, last);
+                Some(resumed.map_err(|error| self.unusable(&error))?)
+            }
             None => Some(DiagnosticsWriter::create(folder, scene)?),
         };
         self.summary.frames.recorded = progress.as_ref().map_or(0, |progress| progress.taken);
@@ -194,7 +201,8 @@ impl<'a> Recording<'a> {
         let keeps = options.states || options.write.iter().any(|format| format.is_of_course());
         let states = keeps.then(begin).transpose()?;
 
-        let mut results = Results { diagnostics, states, export, pictures, warned: options.printing.quiet };
+        let mut results =
+            Results { diagnostics, states, export, pictures, history: None, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
         let Results { diagnostics, mut states, export, pictures, .. } = results;
         if let Some(states) = &mut states {
@@ -279,42 +287,43 @@ impl<'a> Recording<'a> {
     ) -> Result<Simulation<'a>, Failure> {
         let (scene, folder) = (self.scene, self.folder.path());
         let is_whole = self.frames.last() == Some(&scene.last_frame());
-        let wanted = match pictures {
+        let shown = match pictures {
             Some(pictures) => pictures.time_series(),
             None => scene.time_series().filter(|_| options.states && is_whole),
         };
         let is_drawn = pictures.is_some();
-        let (ahead, goes_on) = (wanted.is_some() && is_drawn, progress.is_some());
+        let ahead = shown.is_some() && is_drawn;
+        let wanted = if scene.every.is_some() { Some(Diagnostic::ALL) } else { shown };
+        let noted = wanted.unwrap_or_default().to_vec();
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
                 let path = stored.path().to_owned();
                 let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&path))?;
-                return Ok(Simulation { frames, ahead: false, notes: false, is_stored: true });
+                return Ok(Simulation { frames, ahead: false, notes: false, noted, is_stored: true });
             }
             runner = runner.watching();
             if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
             }
-            if let Some(wanted) = &wanted {
+            if let Some(wanted) = wanted {
                 runner = runner.with_time_series(wanted);
             }
-            let length = progress.as_ref().map_or(0, Progress::waiting_length);
+            let before = progress.as_ref().and_then(Progress::waiting);
+            let file = waiting_states(folder);
             let open = || match self.folder.is_shard() {
                 // This file is not continued after an interruption.
-                true => tempfile::tempfile_in(folder),
-                false => open_growing(&waiting_states(folder), length),
+                true => tempfile::tempfile_in(folder).map(Growing::new),
+                false => Growing::open(&file, before),
             };
-            let waiting = ahead.then(open).transpose();
-            let frames = waiting.and_then(|waiting| {
-                let mut frames = Frames::new(runner, &self.frames, waiting);
-                progress.map_or(Ok(()), |progress| frames.resume(progress)).map(|()| frames)
-            });
-            let frames = frames.map_err(|error| match goes_on {
-                true => self.unusable(&error),
-                false => OutputError::writing(folder)(error),
+            let waiting = ahead.then(open).transpose().map_err(|error| match before {
+                Some(_) => self.unusable(&OutputError::reading(&file)(error)),
+                None => OutputError::writing(folder)(error),
             })?;
-            Ok(Simulation { frames, ahead, notes: wanted.is_some() && !ahead, is_stored: false })
+            let mut frames = Frames::new(runner, &self.frames, waiting);
+            progress.map_or(Ok(()), |progress| frames.resume(progress)).map_err(|error| self.unusable(&error))?;
+            let notes = wanted.is_some() && !ahead && is_whole;
+            Ok(Simulation { frames, ahead, notes, noted, is_stored: false })
         })
     }
 
@@ -338,10 +347,8 @@ impl<'a> Recording<'a> {
                 *sound = self.scene.world(run).state().clone();
             }
         }
-        // Frames that are not kept cannot be continued, and states that are read need no checkpoint.
-        let can_resume = !simulation.is_stored
-            && !self.folder.is_shard()
-            && (results.pictures.is_none() || self.summary.frames.size.is_some());
+        // States that are read need no checkpoint.
+        let can_resume = !simulation.is_stored && !self.folder.is_shard();
         let tell_meetings = |frames: &mut Frames<'_>| {
             frames.meetings().iter().filter(|_| !printing.quiet).for_each(|message| bar.suspend(|| note(message)));
         };
@@ -368,6 +375,7 @@ impl<'a> Recording<'a> {
                 Next::Working | Next::TimeSeries(_) => {}
                 Next::Frame(frame) => {
                     self.summary.frames.recorded += 1;
+                    self.summary.note(&frame);
                     if !*is_stored {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
@@ -391,6 +399,7 @@ impl<'a> Recording<'a> {
             tell_meetings(&mut simulation.frames);
         }
         let frames = &mut simulation.frames;
+        self.summary.note_series(&simulation.noted, series(results.history.as_ref(), frames));
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {
             run.steps = steps;
         }
@@ -407,6 +416,8 @@ struct Simulation<'a> {
     ahead: bool,
     /// Whether the time series are known after the last frame.
     notes: bool,
+    /// The diagnostics of the time series.
+    noted: Vec<Diagnostic>,
     /// Whether stored states are shown, whose causes of divergence are not searched for.
     is_stored: bool,
 }

@@ -78,7 +78,7 @@ pub(super) struct Render {
     animate: Vec<PathBuf>,
 
     /// Do not keep the frames of the animation
-    #[arg(long, requires = "animate", conflicts_with = "resume")]
+    #[arg(long, requires = "animate")]
     no_frames: bool,
 
     /// Draw states.npz, written by `simulate --states` for the same scene, without simulating
@@ -116,7 +116,8 @@ impl Render {
             bail!("--write usd and gltf: a shard has no whole course of a run; write them with `localshape simulate`");
         }
         let from_states = self.from_states.is_some();
-        let wish = Wish { pictures: !self.no_frames, shard: self.shard, from_states, at: self.at.as_ref() };
+        let (keeps, at) = (!self.no_frames, self.at.as_ref());
+        let wish = Wish { pictures: true, keeps, shard: self.shard, from_states, at };
         let mut jobs = self.options.jobs(scenes, wish, words)?;
         jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
@@ -134,7 +135,7 @@ impl Render {
         let device = Arc::new(Device {
             gpu,
             threads: self.options.threads.count(),
-            keep: !self.no_frames,
+            keep: keeps,
             resume: self.options.resume,
             films,
             words: words.to_vec(),
@@ -196,7 +197,7 @@ impl Render {
         let folder = folder_of(path);
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let _lock = FolderLock::beside_others(folder);
-        let mut file = AtomicFile::create(path)?;
+        let mut file = AtomicFile::create_anew(path)?;
         interrupt::listen();
         let pool = self.options.threads.pool()?;
         let Some((frame, history)) = one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {

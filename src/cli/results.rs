@@ -4,7 +4,7 @@ use super::failure::{Failure, note, with_causes};
 use crate::output::export::Export;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
-use crate::runner::{Frames, Next};
+use crate::runner::{Frames, Next, TimeSeries};
 use crate::sim::{Diagnostic, Frame};
 use std::time::{Duration, Instant};
 
@@ -32,6 +32,8 @@ pub(super) struct Results<'a> {
     /// Files for other programs.
     pub(super) export: Export<'a>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
+    /// The time series of the scene, once they are complete.
+    pub(super) history: Option<History>,
     /// Whether the user has read that no checkpoint can be written, or wants no warnings.
     pub(super) warned: bool,
 }
@@ -39,15 +41,17 @@ pub(super) struct Results<'a> {
 impl Results<'_> {
     /// Takes the next result of the frames.
     pub(super) fn take(&mut self, next: &Next, frames: &Frames<'_>) -> Result<(), Failure> {
-        let Self { diagnostics, states, export, pictures, .. } = self;
+        let Self { diagnostics, states, export, pictures, history: known, .. } = self;
         match next {
             Next::TimeSeries(history) => {
+                *known = Some(history.clone());
                 pictures.iter_mut().for_each(|pictures| pictures.take_history(history));
                 states.iter_mut().for_each(|states| states.set_history(history));
                 Ok(())
             }
             Next::Frame(frame) => {
-                diagnostics.iter_mut().try_for_each(|diagnostics| diagnostics.write(frame))?;
+                let series: Vec<_> = series(known.as_ref(), frames).collect();
+                diagnostics.iter_mut().try_for_each(|diagnostics| diagnostics.write(frame, &series))?;
                 if let Some(states) = states {
                     states.write(frame, frames.states())?;
                 }
@@ -79,6 +83,7 @@ impl Results<'_> {
         let mut write = || {
             let Some(progress) = frames.progress().map_err(failed)? else { return Ok(()) };
             let mut checkpoint = Checkpoint::new(summary.command.clone(), manifest, progress);
+            checkpoint.extremes = summary.runs.iter().map(|run| run.extremes.clone()).collect();
             checkpoint.causes = summary.runs.iter().map(|run| run.cause.clone()).collect();
             if !ahead {
                 checkpoint.rows = diagnostics.as_mut().map(DiagnosticsWriter::sync).transpose().map_err(failed)?;
@@ -93,6 +98,17 @@ impl Results<'_> {
             note(&format!("no checkpoint is written: {}", with_causes(error)));
         }
         Ok(())
+    }
+}
+
+/// The time series of the scene: all, if they are `known`, or those of the `frames` so far.
+pub(super) fn series<'s>(
+    known: Option<&'s History>,
+    frames: &'s Frames<'_>,
+) -> Box<dyn Iterator<Item = &'s TimeSeries> + 's> {
+    match known {
+        Some(known) => Box::new(known.series.iter()),
+        None => Box::new(frames.series()),
     }
 }
 

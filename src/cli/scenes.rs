@@ -81,8 +81,9 @@ pub(super) struct Job {
 /// The differences between the commands that run scenes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wish<'a> {
-    /// Whether frames are drawn and kept.
+    /// Whether frames are drawn, and whether they are kept.
     pub(super) pictures: bool,
+    pub(super) keeps: bool,
     /// The shard of the frames, unless all are made.
     pub(super) shard: Option<Shard>,
     /// Whether states are read, so that no checkpoint is needed.
@@ -114,7 +115,7 @@ impl RunOptions {
 
     /// The job for one scene in a folder.
     fn job(&self, scene: Scene, path: &Path, wish: Wish<'_>, words: &[OsString]) -> Result<Job, Failure> {
-        let Wish { pictures, shard, from_states, at } = wish;
+        let Wish { pictures, keeps, shard, from_states, at } = wish;
         let runs = self.runs(&scene)?;
         let mut frames = self.frames(&scene, at)?;
         let all = frames.clone();
@@ -125,7 +126,8 @@ impl RunOptions {
         let size = pictures.then_some(scene.view.size);
         let files = export::files(&scene, &runs, &self.formats(), all.len());
         let files = files.map_err(|message| Failure::usage(format!("--write: in “{}” {message}", scene.title)))?;
-        let manifest = Manifest { runs: names.collect(), frames: frames.clone(), states: self.states, files, size };
+        let (runs_of, states) = (names.collect(), self.states);
+        let manifest = Manifest { runs: runs_of, frames: frames.clone(), states, files, size, keeps };
         let resume = self.resume && !from_states && shard.is_none();
         let access = Access { overwrite: self.overwrite, follows: self.out.is_none(), resume, shard: shard.is_some() };
         let folder = Folder::inspect(path, Whose::of(&scene), manifest, access).map_err(|error| match error {

@@ -9,6 +9,7 @@ use crate::output::{Compression, OutputError, encode_print, read_tags};
 use crate::picture::{Composer, Picture, type_left_out};
 use crate::reading::words::short;
 use crate::render::{RenderError, Renderer};
+use crate::runner::growing::Growing;
 use crate::runner::history::History;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
@@ -61,7 +62,8 @@ pub(super) fn one_frame(
     folder: &Path,
 ) -> Result<Option<(Frame, Option<History>)>, Failure> {
     let wanted = scene.time_series();
-    let waiting = wanted.map(|_| tempfile::tempfile_in(folder)).transpose().map_err(OutputError::writing(folder))?;
+    let waiting = wanted.map(|_| tempfile::tempfile_in(folder).map(Growing::new));
+    let waiting = waiting.transpose().map_err(OutputError::writing(folder))?;
     let mut frames = pool.install(|| {
         let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
         let runner = match wanted {

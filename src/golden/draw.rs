@@ -8,6 +8,7 @@ use crate::gpu::{AdapterChoice, Gpu, InitError, adapter_name};
 use crate::output::{Compression, Tags, encode, frame_file_name, recorded, state_digest};
 use crate::picture::{Composer, compose_figure};
 use crate::render::{RenderError, Renderer};
+use crate::runner::growing::Growing;
 use crate::runner::history::History;
 use crate::runner::moments::Taking;
 use crate::runner::{Frames, Next, Runner};
@@ -127,7 +128,7 @@ fn draw_scene(
     };
     let digests = scene.runs.iter().map(|run| run.of.len()).sum();
     let frames: Vec<u64> = frames_with_digests(last, digests, &drawn).into_iter().collect();
-    let waiting = wanted.map(|_| tempfile::tempfile()).transpose()?;
+    let waiting = wanted.map(|_| tempfile::tempfile().map(Growing::new)).transpose()?;
     let mut frames = Frames::new(runner, &frames, waiting);
     let (mut course, mut composer) = (History::default(), None);
     loop {

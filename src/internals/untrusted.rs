@@ -226,8 +226,8 @@ fn checkpoint(bytes: &[u8]) -> bool {
 fn summary(bytes: &[u8]) -> bool {
     in_folder("run.json", bytes, |path| {
         let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-        let manifest =
-            Manifest { runs: vec!["shape".to_owned()], frames: vec![0], states: false, files: Vec::new(), size: None };
+        let (runs, files) = (vec!["shape".to_owned()], Vec::new());
+        let manifest = Manifest { runs, frames: vec![0], states: false, files, size: None, keeps: true };
         let folder = path.parent().expect("a folder");
         Folder::inspect(folder, Whose::of(&scene), manifest, Access::default()).is_ok()
     })

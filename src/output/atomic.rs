@@ -2,18 +2,16 @@
 
 use super::OutputError;
 use super::frame_name::frame_number;
-use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
-#[cfg(feature = "render")]
-use tempfile::TempDir;
 
 const PREFIX: &str = ".localshape-";
 const SUFFIX: &str = ".partial";
 
-/// A file with a hidden name until [`Self::commit`] renames it. If it is dropped before that, it is removed.
+/// A file with a hidden name until [`Self::commit`] renames it. If it is dropped before that, it is removed. Until then
+/// its process holds a lock on it, on Unix.
 #[derive(Debug)]
 pub(crate) struct AtomicFile {
     path: PathBuf,
@@ -28,7 +26,27 @@ impl AtomicFile {
         // `File::create` gives results the usual permissions; files made by tempfile can be read by their owner only.
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
         let made = tempfile::Builder::new().prefix(&prefix(path)).suffix(SUFFIX).make_in(folder, open);
-        Ok(Self { path: path.to_owned(), temporary: made.map_err(OutputError::writing(path))? })
+        let temporary = made.map_err(OutputError::writing(path))?;
+        // Where locks keep others from writing, `ffmpeg` could not write its films.
+        #[cfg(unix)]
+        let _ = temporary.as_file().try_lock();
+        Ok(Self { path: path.to_owned(), temporary })
+    }
+
+    /// Creates the file, after removing what killed processes have left of it.
+    #[cfg(feature = "render")]
+    pub(crate) fn create_anew(path: &Path) -> Result<Self, OutputError> {
+        let (folder, prefix) = (folder_of(path), prefix(path));
+        for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
+            let entry = entry.map_err(OutputError::reading(folder))?;
+            let is_left = |name: &str| cfg!(unix) && name.starts_with(&prefix) && name.ends_with(SUFFIX);
+            if entry.file_name().to_str().is_some_and(is_left)
+                && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok())
+            {
+                remove(&entry.path())?;
+            }
+        }
+        Self::create(path)
     }
 
     /// The hidden name, for programs that write the file themselves.
@@ -76,40 +94,17 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> 
     file.commit()
 }
 
-/// The beginning of the hidden name of a file. The name for a frame has its number.
+/// The beginning of the hidden name of a file: it has the first characters of the file's name.
 fn prefix(path: &Path) -> String {
-    let frame = path.file_name().and_then(OsStr::to_str).filter(|name| frame_number(name).is_some());
-    frame.map_or(PREFIX.to_owned(), |name| format!("{PREFIX}{name}-"))
+    /// The most characters, so that the hidden name is not too long for any system.
+    const MOST: usize = 40;
+    let name: String = path.file_name().unwrap_or_default().to_string_lossy().chars().take(MOST).collect();
+    format!("{PREFIX}{name}-")
 }
 
 /// The frame whose unfinished file has a hidden name.
 fn frame_of(hidden: &str) -> Option<u64> {
     frame_number(hidden.strip_prefix(PREFIX)?.split_once('-')?.0)
-}
-
-/// Opens a growing file with a fixed hidden name in a folder. It outlives its process, so that another one can continue
-/// it. Bytes beyond `length` are cut off; with 0 the file is new.
-///
-/// # Errors
-/// If it cannot be opened, or is shorter than `length`.
-pub(crate) fn open_growing(path: &Path, length: u64) -> io::Result<File> {
-    let mut file = File::options().read(true).write(true).create(length == 0).truncate(false).open(path)?;
-    if file.metadata()?.len() < length {
-        return Err(io::ErrorKind::UnexpectedEof.into());
-    }
-    file.set_len(length)?;
-    file.seek(SeekFrom::End(0))?;
-    Ok(file)
-}
-
-/// Makes a hidden folder in a folder. When dropped, it is removed with its contents.
-///
-/// # Errors
-/// If it cannot be made.
-#[cfg(feature = "render")]
-pub(crate) fn temporary_folder(folder: &Path) -> Result<TempDir, OutputError> {
-    let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempdir_in(folder);
-    made.map_err(OutputError::writing(folder))
 }
 
 /// Makes new names in a folder survive a power failure, where the system can do so.

@@ -4,11 +4,11 @@
 //! `diagnostics.csv`, have hidden files of their own. The checkpoint stores how long they were when it was written.
 
 use super::atomic::{remove, sync_folder};
-use super::diagnostics::Rows;
 use super::states::Written;
-use super::{OutputError, Whose, read_file, write_whole};
+use super::{Extremes, OutputError, Whose, read_file, write_whole};
 use crate::runner::Progress;
 use crate::runner::cause::Cause;
+use crate::runner::growing::Grown;
 use crate::scene::Origin;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
-const MARK: &[u8] = b"localshape checkpoint 5\n";
+const MARK: &[u8] = b"localshape checkpoint 6\n";
 /// The beginning of the marks of all versions.
 const ANY_MARK: &[u8] = b"localshape checkpoint ";
 
@@ -35,6 +35,15 @@ pub(crate) struct Manifest {
     pub files: Vec<String>,
     /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
     pub size: Option<[u32; 2]>,
+    /// Whether drawn frames are kept after the command.
+    pub keeps: bool,
+}
+
+impl Manifest {
+    /// Width and height of the frames in the folder (px), if frames are drawn and kept.
+    pub(crate) fn kept_size(&self) -> Option<[u32; 2]> {
+        self.size.filter(|_| self.keeps)
+    }
 }
 
 /// The progress of a command.
@@ -48,16 +57,19 @@ pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
     /// The known cause of the divergence of each run.
     pub(crate) causes: Vec<Option<Cause>>,
+    /// The least and the greatest values of each run in frames.
+    pub(crate) extremes: Vec<Extremes>,
     /// The rows of the frames written so far; `None` if no frame is written before the end of the simulation.
-    pub(crate) rows: Option<Rows>,
+    pub(crate) rows: Option<Grown>,
     /// The states written so far, if states are written.
-    pub(crate) course: Option<Written>,
+    pub(crate) course: Option<(Written, Grown)>,
 }
 
 impl Checkpoint {
     /// The checkpoint of a command with a manifest.
     pub(crate) fn new(command: Vec<String>, manifest: &Manifest, progress: Progress) -> Self {
-        Self { command, manifest: digest(manifest), progress, causes: Vec::new(), rows: None, course: None }
+        let (causes, extremes) = Default::default();
+        Self { command, manifest: digest(manifest), progress, causes, extremes, rows: None, course: None }
     }
 
     /// Writes the checkpoint into a folder, replacing an earlier one. The files that it refers to must be on the disk.
@@ -69,7 +81,7 @@ impl Checkpoint {
         let mut rest = postcard::to_allocvec(&origin).expect("plain data");
         rest.extend(postcard::to_allocvec(self).expect("plain data"));
         // The names of frames and of hidden files must be on the disk before the checkpoint is.
-        sync_folder(folder);
+        [folder, &passing_frames(folder)].into_iter().for_each(sync_folder);
         write_whole(&folder.join(CHECKPOINT_FILE), &[MARK, &Sha256::digest(&rest), &rest].concat())
     }
 
@@ -85,7 +97,7 @@ impl Checkpoint {
     }
 
     fn parse(bytes: &[u8], whose: &Whose, manifest: &Manifest) -> Result<Self, String> {
-        let damaged = || "is damaged or cut short".to_owned();
+        let damaged = || format!("is damaged or cut short ({CHECKPOINT_FILE})");
         if bytes.starts_with(ANY_MARK) && bytes.len() > MARK.len() && !bytes.starts_with(MARK) {
             return Err("was written by another version of localshape".to_owned());
         }
@@ -122,6 +134,11 @@ impl Checkpoint {
     }
 }
 
+/// The path of the hidden folder in a folder with drawn frames that are not kept after the command.
+pub(crate) fn passing_frames(folder: &Path) -> PathBuf {
+    folder.join(".localshape-pictures.partial")
+}
+
 /// The path of the hidden file in a folder whose states wait to be drawn.
 pub(crate) fn waiting_states(folder: &Path) -> PathBuf {
     folder.join(".localshape-frames.partial")
@@ -140,7 +157,14 @@ mod tests {
     }
 
     fn manifest() -> Manifest {
-        Manifest { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, files: Vec::new(), size: None }
+        Manifest {
+            runs: vec!["one".to_owned()],
+            frames: vec![0, 1, 2],
+            states: false,
+            files: Vec::new(),
+            size: None,
+            keeps: true,
+        }
     }
 
     #[test]
@@ -188,6 +212,6 @@ mod tests {
         assert_eq!(of(origin(&edited)), "belongs to another version of “Cubes”; expected “Cubes” as it is now");
         let other = Whose { title: "Springs".to_owned(), ..edited };
         assert_eq!(of(origin(&other)), "belongs to another scene, “Springs”; expected “Cubes” as it is now");
-        assert_eq!(of(origin(&whose())), "is damaged or cut short", "nothing follows");
+        assert_eq!(of(origin(&whose())), format!("is damaged or cut short ({CHECKPOINT_FILE})"), "nothing follows");
     }
 }

@@ -1,13 +1,14 @@
-//! `diagnostics.csv`: one row for each run and frame, and further ones for each of several bodies.
+//! `diagnostics.csv`: one row for each run and frame, further ones for each of several bodies, and on request rows between
+//! frames.
 
-use super::atomic::open_growing;
+use super::atomic::remove;
 use super::{OutputError, exact, rows_as_csv};
+use crate::runner::TimeSeries;
+use crate::runner::growing::{Growing, Grown};
 use crate::scene::{ALL_BODIES, Scene};
-use crate::sim::{Diagnostic, Diagnostics, Frame, RunFrame, Snapshot, Status, Value};
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, Seek, Write};
+use crate::sim::{Diagnostic, Diagnostics, Frame, RunFrame, Status, Value};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The name of the file in its folder.
@@ -20,114 +21,106 @@ const UNFINISHED: &str = ".localshape-diagnostics.partial";
 #[derive(Debug)]
 pub(crate) struct DiagnosticsWriter<'a> {
     pub(super) scene: &'a Scene,
-    file: File,
+    file: Growing,
     hidden: PathBuf,
     pub(super) path: PathBuf,
-    written: Rows,
-    /// The digest of the written bytes.
-    digest: Sha256,
-}
-
-/// Completely written rows, with the heading.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Rows {
-    /// Their length (bytes).
-    length: u64,
-    /// Their SHA-256.
-    digest: [u8; 32],
+    /// The last written frame.
+    last: Option<u64>,
 }
 
 impl<'a> DiagnosticsWriter<'a> {
     /// Creates the file in `folder`.
     pub(crate) fn create(folder: &Path, scene: &'a Scene) -> Result<Self, OutputError> {
-        let mut writer = Self::open(folder, scene, Rows::default())?;
-        let none = Snapshot::default();
-        let heads = cells("", ALL_BODIES, 0, &none, &none.diagnostics).into_iter().map(|(head, _)| head);
+        let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
+        let file = Growing::open(&hidden, None).map_err(OutputError::writing(&path))?;
+        let mut writer = Self { scene, file, hidden, path, last: None };
+        let heads = cells(["", ALL_BODIES], None, 0.0, Status::Ok, &Diagnostics::default());
+        let heads = heads.into_iter().map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
     }
 
-    /// Continues after the rows of another process, whether it has finished the file or not.
-    pub(crate) fn resume(folder: &Path, scene: &'a Scene, before: Rows) -> Result<Self, OutputError> {
+    /// Continues after the rows of another process up to its frame `last`, whether it has finished the file or not.
+    pub(crate) fn resume(
+        folder: &Path,
+        scene: &'a Scene,
+        before: Grown,
+        last: Option<u64>,
+    ) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         // A finished file has lost its hidden name.
-        if !hidden.metadata().is_ok_and(|found| found.len() >= before.length) {
+        let is_finished = !hidden.metadata().is_ok_and(|found| found.len() >= before.length);
+        if is_finished {
             fs::copy(&path, &hidden).map_err(OutputError::reading(&path))?;
         }
-        let mut writer = Self::open(folder, scene, before)?;
-        writer.digest = digest_of(&mut writer.file).map_err(OutputError::reading(&path))?;
-        match writer.written() == before {
-            true => Ok(writer),
-            false => Err(OutputError::reading(&path)(io::ErrorKind::InvalidData.into())),
+        match Growing::open(&hidden, Some(before)) {
+            Ok(file) => Ok(Self { scene, file, hidden, path, last }),
+            Err(error) if is_finished => {
+                // The user may restore the finished file.
+                remove(&hidden)?;
+                Err(OutputError::reading(&path)(error))
+            }
+            Err(error) => Err(OutputError::reading(&hidden)(error)),
         }
     }
 
-    fn open(folder: &Path, scene: &'a Scene, before: Rows) -> Result<Self, OutputError> {
-        let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
-        let file = open_growing(&hidden, before.length).map_err(OutputError::writing(&path))?;
-        Ok(Self { scene, file, hidden, path, written: before, digest: Sha256::new() })
-    }
-
-    /// Appends the rows of one frame: for each run in it one on all its bodies, then one on each if it has several.
+    /// Appends the rows of one frame: for each run in it one on all its bodies, then one on each if it has several. If the
+    /// scene asks for rows between frames, those since the last frame come before, from the time `series` of the runs.
     ///
     /// # Errors
     /// If they cannot be written; rows written before stay.
-    pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
-        let scene = self.scene;
-        let rows = frame.runs.iter().flat_map(|RunFrame { run, snapshot, .. }| {
-            let run = &scene.runs[*run];
-            let of_bodies = run.several(scene).map(|(body, _)| body).zip(&snapshot.of_bodies);
-            let rows = std::iter::once((ALL_BODIES, &snapshot.diagnostics)).chain(of_bodies);
-            rows.map(|(body, diagnostics)| cells(&run.name, body, frame.index, snapshot, diagnostics))
-        });
-        self.append(&rows_as_csv(rows.map(|row| row.into_iter().map(|(_, cell)| cell))))
+    pub(crate) fn write(&mut self, frame: &Frame, series: &[&TimeSeries]) -> Result<(), OutputError> {
+        let mut rows = Vec::new();
+        for RunFrame { run: at, snapshot, .. } in &frame.runs {
+            let run = &self.scene.runs[*at];
+            let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
+            let mut add = |frame, time, status, all, of_bodies: Vec<&Diagnostics>| {
+                let all = std::iter::once((ALL_BODIES, all)).chain(bodies.iter().copied().zip(of_bodies));
+                rows.extend(all.map(|(body, one)| cells([&run.name, body], frame, time, status, one)));
+            };
+            if let (Some(last), Some(series)) = (self.last, series.iter().find(|series| series.run == *at)) {
+                let after = self.scene.frame_step(*at, last) as f64 * run.step;
+                let places = [after, snapshot.time].map(|end| series.times.partition_point(|time| *time <= end));
+                let times = (places[0]..places[1]).map(|place| (place, series.times[place]));
+                for (place, time) in times.filter(|&(_, time)| time < snapshot.time && self.scene.has_row(*at, time)) {
+                    let of_bodies = series.of_bodies.iter().map(|body| &body[place]);
+                    add(None, time, Status::Ok, &series.diagnostics[place], of_bodies.collect());
+                }
+            }
+            let of_bodies = snapshot.of_bodies.iter().collect();
+            add(Some(frame.index), snapshot.time, snapshot.status, &snapshot.diagnostics, of_bodies);
+        }
+        self.last = Some(frame.index);
+        self.append(&rows_as_csv(rows.into_iter().map(|row| row.into_iter().map(|(_, cell)| cell))))
     }
 
     fn append(&mut self, text: &[u8]) -> Result<(), OutputError> {
-        self.file.write_all(text).map_err(OutputError::writing(&self.path))?;
-        self.digest.update(text);
-        self.written.length += text.len() as u64;
-        Ok(())
-    }
-
-    /// The rows written so far.
-    fn written(&self) -> Rows {
-        Rows { digest: self.digest.clone().finalize().into(), ..self.written }
+        self.file.append(text).map_err(OutputError::writing(&self.path))
     }
 
     /// Makes the rows written so far survive a power failure.
-    pub(crate) fn sync(&mut self) -> io::Result<Rows> {
-        self.file.sync_data()?;
-        Ok(self.written())
+    pub(crate) fn sync(&mut self) -> io::Result<Grown> {
+        self.file.sync()
     }
 
     /// Renames the file to its final name. After a failed [`Self::write`] it ends with the last complete frame.
     pub(crate) fn finish(self) -> Result<(), OutputError> {
-        let Self { file, hidden, path, written, .. } = self;
-        let renamed =
-            file.set_len(written.length).and_then(|()| file.sync_data()).and_then(|()| fs::rename(hidden, &path));
+        let Self { file, hidden, path, .. } = self;
+        let renamed = file.cut().and_then(|()| file.sync()).and_then(|_| fs::rename(hidden, &path));
         renamed.map_err(OutputError::writing(&path))
     }
 }
 
-/// The digest of a whole file, leaving the position at its end.
-fn digest_of(file: &mut File) -> io::Result<Sha256> {
-    file.rewind()?;
-    let (mut digest, mut reader) = (Sha256::new(), BufReader::new(file));
-    loop {
-        let bytes = reader.fill_buf()?;
-        if bytes.is_empty() {
-            return Ok(digest);
-        }
-        digest.update(bytes);
-        let length = bytes.len();
-        reader.consume(length);
-    }
-}
-
-/// The cells of a row, each with the heading of its column; `docs/files.md` explains them.
-fn cells(run: &str, body: &str, frame: u64, snapshot: &Snapshot, diagnostics: &Diagnostics) -> Vec<(String, String)> {
-    let status = match snapshot.status {
+/// The cells of a row of a run and a body, each with the heading of its column; `docs/files.md` explains them. A row between
+/// frames has no frame.
+fn cells(
+    [run, body]: [&str; 2],
+    frame: Option<u64>,
+    time: f64,
+    status: Status,
+    diagnostics: &Diagnostics,
+) -> Vec<(String, String)> {
+    let status = match status {
         Status::Ok => "ok",
         Status::Diverged(divergence) if divergence.is_end => "ended",
         Status::Diverged(_) => "diverged",
@@ -136,8 +129,8 @@ fn cells(run: &str, body: &str, frame: u64, snapshot: &Snapshot, diagnostics: &D
     let mut cells = vec![
         plain("run", run.to_owned()),
         plain("body", body.to_owned()),
-        plain("frame", frame.to_string()),
-        plain("time", exact(snapshot.time)),
+        plain("frame", frame.map_or_else(String::new, |frame| frame.to_string())),
+        plain("time", exact(time)),
     ];
     for diagnostic in Diagnostic::ALL {
         let key = diagnostic.key();

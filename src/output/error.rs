@@ -11,8 +11,11 @@ pub enum OutputError {
     Write { path: PathBuf, source: io::Error },
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: io::Error },
-    #[error("{} is in use: {what}; wait until that has ended, or choose another folder with -o", path.display())]
-    InUse { path: PathBuf, what: Box<str> },
+    #[error(
+        "{} is in use: another process is writing there; wait until that has ended, or choose another folder with -o",
+        path.display()
+    )]
+    InUse { path: PathBuf },
     #[error("{} is {what}, not a folder; choose another folder with -o", path.display())]
     NoFolder { path: PathBuf, what: &'static str },
     #[error("{} is {what}, not a file; move it away, or choose another folder with -o", path.display())]
@@ -25,10 +28,11 @@ pub enum OutputError {
     Occupied { path: PathBuf, what: String },
 }
 
-/// An addition to the message if the disk is full.
+/// An addition to the message if the disk is full, or the file too large for the system.
 fn hint(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ": the disk is full; finished files are kept",
+        io::ErrorKind::FileTooLarge => ": it is larger than the system permits (`ulimit -f`); finished files are kept",
         _ => "",
     }
 }

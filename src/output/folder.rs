@@ -243,7 +243,7 @@ impl Found {
                 Some(_) => {
                     let Some((size, tags)) = frame else { continue };
                     let runs = tags.states.iter().map(|(_, run)| run);
-                    if manifest.size.is_some_and(|own| own != size || !runs.clone().eq(&manifest.runs)) {
+                    if manifest.kept_size().is_some_and(|own| own != size || !runs.clone().eq(&manifest.runs)) {
                         let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
                         unlike_words = format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "));
                         unlike.push(path);
@@ -351,7 +351,14 @@ mod tests {
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
-        let manifest = Manifest { runs: Vec::new(), frames: Vec::new(), states: false, files: Vec::new(), size: None };
+        let manifest = Manifest {
+            runs: Vec::new(),
+            frames: Vec::new(),
+            states: false,
+            files: Vec::new(),
+            size: None,
+            keeps: true,
+        };
         let inspect = |scene, access| Folder::inspect(place.path(), Whose::of(scene), manifest.clone(), access);
         let summary = Summary::new(&one, &[0], 0, &[]);
         inspect(&one, Access::default()).unwrap().prepare(&summary).unwrap();

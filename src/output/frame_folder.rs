@@ -31,7 +31,7 @@ impl<'a> FrameFolder<'a> {
     /// # Errors
     /// If they cannot be written; rows written before stay.
     pub fn write_diagnostics(&mut self, frame: &Frame) -> io::Result<()> {
-        self.diagnostics.write(frame).map_err(io::Error::other)
+        self.diagnostics.write(frame, &[]).map_err(io::Error::other)
     }
 
     /// Gives `diagnostics.csv` its name.

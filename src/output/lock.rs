@@ -27,7 +27,7 @@ impl FolderLock {
     /// If another process writes to it.
     pub(super) fn alone(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
-        if lock.take(true) { Ok(lock) } else { Err(in_use(path)) }
+        if lock.take(true) { Ok(lock) } else { Err(OutputError::InUse { path: path.to_owned() }) }
     }
 
     /// Locks an existing folder for adding files together with other processes.
@@ -36,7 +36,7 @@ impl FolderLock {
     /// If a process has locked it for exclusive use.
     pub(super) fn shared(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
-        if lock.take(false) { Ok(lock) } else { Err(in_use(path)) }
+        if lock.take(false) { Ok(lock) } else { Err(OutputError::InUse { path: path.to_owned() }) }
     }
 
     /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they
@@ -50,7 +50,7 @@ impl FolderLock {
 
     /// Tests whether a process has locked a folder, which need not exist, for exclusive use.
     pub(crate) fn check(path: &Path) -> Result<(), OutputError> {
-        if Self::open(path).take(false) { Ok(()) } else { Err(in_use(path)) }
+        if Self::open(path).take(false) { Ok(()) } else { Err(OutputError::InUse { path: path.to_owned() }) }
     }
 
     fn open(path: &Path) -> Self {
@@ -71,38 +71,6 @@ impl FolderLock {
         }
         true
     }
-}
-
-/// The error for a folder to which another process writes.
-fn in_use(path: &Path) -> OutputError {
-    let process = holder(path).map_or("another process".to_owned(), |id| format!("process {id}"));
-    OutputError::InUse { path: path.to_owned(), what: format!("{process} is writing there").into() }
-}
-
-/// The process that has locked a folder, where the system provides it.
-fn holder(path: &Path) -> Option<u32> {
-    #[cfg(target_os = "linux")]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let found = std::fs::metadata(path).ok()?;
-        let (major, minor) = (rustix::fs::major(found.dev()), rustix::fs::minor(found.dev()));
-        holder_in(&std::fs::read_to_string("/proc/locks").ok()?, &format!("{major:02x}:{minor:02x}:{}", found.ino()))
-    }
-    #[cfg(not(target_os = "linux"))]
-    {
-        let _ = path;
-        None
-    }
-}
-
-/// The process that has locked a file, given as in `/proc/locks` by its device and inode number, such as
-/// `fe:00:5309211` in `1: FLOCK  ADVISORY  WRITE 16548 fe:00:5309211 0 EOF`.
-#[cfg(target_os = "linux")]
-fn holder_in(locks: &str, file: &str) -> Option<u32> {
-    locks.lines().find_map(|line| {
-        let words: Vec<_> = line.split_whitespace().collect();
-        (*words.get(1)? == "FLOCK" && *words.get(5)? == file).then(|| words[4].parse().ok())?
-    })
 }
 
 #[cfg(all(test, unix))]
@@ -147,13 +115,5 @@ mod tests {
             let _beside = beside.join().unwrap();
             assert!(matches!(FolderLock::alone(path), Err(OutputError::InUse { .. })));
         });
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn the_same_number_on_another_device_is_another_folder() {
-        let locks = "1: FLOCK  ADVISORY  WRITE 12 fe:01:99 0 EOF\n2: FLOCK  ADVISORY  WRITE 34 fe:00:99 0 EOF\n";
-        assert_eq!(holder_in(locks, "fe:00:99"), Some(34));
-        assert_eq!(holder_in(locks, "fe:02:99"), None);
     }
 }

@@ -12,6 +12,7 @@ mod digest;
 mod drawn;
 mod error;
 pub(crate) mod export;
+mod extremes;
 mod folder;
 mod frame_folder;
 mod frame_name;
@@ -24,11 +25,12 @@ mod states;
 mod summary;
 mod timing;
 
-pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
+pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
 pub(crate) use checkpoint::{Checkpoint, Manifest, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::{recorded, state_digest};
 pub(crate) use error::{OutputError, is_folder, read_file};
+pub(crate) use extremes::Extremes;
 pub(crate) use folder::{Access, Claimed, Folder, Whose};
 pub use frame_folder::FrameFolder;
 pub(crate) use frame_name::FRAME_FILES;
@@ -40,7 +42,7 @@ pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
 #[cfg(feature = "render")]
 pub(crate) use {
-    atomic::temporary_folder,
+    checkpoint::passing_frames,
     drawn::{encode_like, frame_files, is_drawn, packed, picture_size},
     frame_name::frame_file_name,
     frames::{FrameWriter, PixelFrame},

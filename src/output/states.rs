@@ -1,7 +1,7 @@
 //! `states.npz`: bodies, and their positions and velocities in every frame, for analysis in other programs.
 
-use super::atomic::open_growing;
 use super::{AtomicFile, OutputError};
+use crate::runner::growing::{Growing, Grown};
 use crate::runner::history::History;
 use crate::scene::npy::begin;
 use crate::scene::{COURSE, Course, Origin, Run, Scene, SceneBody, StoredRun};
@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ const SPOOL: &str = ".localshape-states.partial";
 #[derive(Debug)]
 pub(crate) struct StatesWriter {
     path: PathBuf,
-    spool: File,
+    spool: Growing,
     /// The names of the scene's bodies, if it has several.
     names: Vec<String>,
     meshes: Vec<Mesh>,
@@ -98,7 +98,7 @@ impl StatesWriter {
         scene: &Scene,
         runs: &[usize],
         states: impl Iterator<Item = &'s State>,
-        before: Option<Written>,
+        before: Option<(Written, Grown)>,
     ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
@@ -140,13 +140,22 @@ impl StatesWriter {
         let name = |body: &SceneBody| if body.name.is_empty() { "body".to_owned() } else { body.name.clone() };
         let names = scene.bodies.iter().map(name).filter(|_| scene.bodies.len() > 1).collect();
         let origin = Origin::new(&scene.digest, &scene.title);
-        let written = match before {
-            Some(before) if before.course.fits(&stored) => before,
-            Some(_) => return Err(OutputError::reading(&path)(io::ErrorKind::InvalidData.into())),
-            None => Written { course: Course { runs: stored, ..Course::default() }, history: None },
+        let hidden = folder.join(SPOOL);
+        let is_whole = |(before, grown): &(Written, Grown)| {
+            before.course.fits(&stored) && grown.length == before.course.frames.len() as u64 * record
         };
-        let length = written.course.frames.len() as u64 * record;
-        let spool = open_growing(&folder.join(SPOOL), length).map_err(OutputError::writing(&path))?;
+        let (written, spool) = match before {
+            Some(before) if !is_whole(&before) => {
+                return Err(OutputError::reading(&path)(ErrorKind::InvalidData.into()));
+            }
+            Some((before, grown)) => {
+                (before, Growing::open(&hidden, Some(grown)).map_err(OutputError::reading(&hidden))?)
+            }
+            None => {
+                let written = Written { course: Course { runs: stored, ..Course::default() }, history: None };
+                (written, Growing::open(&hidden, None).map_err(OutputError::writing(&path))?)
+            }
+        };
         Ok(Self { path, spool, names, meshes, arrays, record, own_time, steps, origin, written })
     }
 
@@ -180,7 +189,7 @@ impl StatesWriter {
             }
         }
         assert_eq!(record.len() as u64, self.record, "every frame shows the runs that the file was begun for");
-        self.spool.write_all(&record).map_err(OutputError::writing(&self.path))?;
+        self.spool.append(&record).map_err(OutputError::writing(&self.path))?;
         course.frames.push(frame.index);
         Ok(())
     }
@@ -198,10 +207,10 @@ impl StatesWriter {
         nodes: &Range<usize>,
     ) -> io::Result<Vec<DVec3>> {
         let name = format!("{}.{quantity}", self.written.course.runs[place].name);
-        let array = self.arrays.iter().find(|array| array.name == name).ok_or(io::ErrorKind::NotFound)?;
+        let array = self.arrays.iter().find(|array| array.name == name).ok_or(ErrorKind::NotFound)?;
         let mut bytes = vec![0; 24 * nodes.len()];
-        self.spool.seek(SeekFrom::Start(frame as u64 * self.record + array.offset + 24 * nodes.start as u64))?;
-        self.spool.read_exact(&mut bytes)?;
+        let place = frame as u64 * self.record + array.offset + 24 * nodes.start as u64;
+        self.spool.read_at(place, &mut bytes)?;
         let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
         let vector =
             |bytes: &[u8; 24]| DVec3::from_slice(&bytes.as_chunks::<8>().0.iter().map(number).collect::<Vec<_>>());
@@ -221,9 +230,8 @@ impl StatesWriter {
     }
 
     /// Makes the frames written so far survive a power failure.
-    pub(crate) fn sync(&mut self) -> io::Result<Written> {
-        self.spool.sync_data()?;
-        Ok(self.written.clone())
+    pub(crate) fn sync(&mut self) -> io::Result<(Written, Grown)> {
+        Ok((self.written.clone(), self.spool.sync()?))
     }
 
     /// Rearranges the frames written so far and renames the file to its final name.
@@ -258,8 +266,7 @@ impl StatesWriter {
             begin(archive, &array.name, "<f8", &shape, frames * array.length as u64)?;
             part.resize(array.length, 0);
             for frame in 0..frames {
-                self.spool.seek(SeekFrom::Start(frame * self.record + array.offset))?;
-                self.spool.read_exact(&mut part)?;
+                self.spool.read_at(frame * self.record + array.offset, &mut part)?;
                 archive.write_all(&part)?;
             }
         }

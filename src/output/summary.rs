@@ -1,9 +1,10 @@
 //! `run.json`: the command, its files and its outcome.
 
-use super::{OutputError, Timings, state_digest, write_whole};
+use super::{Extremes, OutputError, Timings, state_digest, write_whole};
+use crate::runner::TimeSeries;
 use crate::runner::cause::Cause;
 use crate::scene::Scene;
-use crate::sim::{Chosen, Diagnostics, Divergence, Frame, Scope, Status, Unsolved};
+use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Frame, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 
@@ -100,7 +101,7 @@ pub(crate) struct RunSummary {
     pub bodies: Vec<String>,
     /// Time step (s).
     pub time_step: f64,
-    /// The number of steps that this command has simulated; after a divergence steps are only counted.
+    /// The number of simulated steps, with those before an interruption; after a divergence steps are only counted.
     pub steps: u64,
     /// `ok`, `ended` or `diverged`.
     #[serde(flatten)]
@@ -116,6 +117,9 @@ pub(crate) struct RunSummary {
     pub cut: Vec<u64>,
     /// The last frame that this command recorded; `null` before the first.
     pub last: Option<LastState>,
+    /// The least and the greatest values, with those before an interruption.
+    #[serde(flatten)]
+    pub extremes: Extremes,
 }
 
 /// The outcome of a run.
@@ -207,6 +211,7 @@ impl Summary {
                 unsolved: None,
                 cut: Vec::new(),
                 last: None,
+                extremes: Extremes::default(),
             }
         };
         Self {
@@ -228,6 +233,27 @@ impl Summary {
             films: Vec::new(),
             reached: None,
             times: None,
+        }
+    }
+
+    /// Records the values of a frame.
+    pub(crate) fn note(&mut self, frame: &Frame) {
+        for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
+            let Snapshot { time, status, diagnostics, .. } = &run.snapshot;
+            let time = match status {
+                Status::Ok => *time,
+                // That of the last finite state, which the frame shows.
+                Status::Diverged(divergence) => (divergence.step - 1) as f64 * summary.time_step,
+            };
+            summary.extremes.note(Diagnostic::ALL, time, diagnostics);
+        }
+    }
+
+    /// Records the values of some diagnostics in time series.
+    pub(crate) fn note_series<'s>(&mut self, wanted: &[Diagnostic], series: impl Iterator<Item = &'s TimeSeries>) {
+        for (summary, series) in self.runs.iter_mut().zip(series) {
+            let moments = series.times.iter().zip(&series.diagnostics);
+            moments.for_each(|(&time, all)| summary.extremes.note(wanted, time, all));
         }
     }
 

@@ -1,13 +1,13 @@
 //! Frames in rising order: simulated or recorded on request, or all simulated before the first one. The progress can be
 //! saved, so that another process continues.
 
+use super::growing::{Growing, Grown};
 use super::last_fit::Fitting;
-use super::{History, Runner, Running, Stored};
+use super::{History, Runner, Running, Stored, TimeSeries};
 use crate::sim::{Frame, State};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io;
 use std::path::Path;
 
 /// Frames of a scene in rising order. The scene is simulated once, even if the first frame needs the time series of the
@@ -19,8 +19,6 @@ pub(crate) struct Frames<'a> {
     taken: usize,
     /// True when every run has reached the next frame.
     is_searching: bool,
-    /// The steps of each run in earlier processes.
-    before: Vec<u64>,
     /// The stored time series, until they are returned.
     known: Option<History>,
     source: Source,
@@ -39,8 +37,8 @@ pub(crate) struct Progress {
     met: Vec<bool>,
     /// The number of frames returned.
     pub(crate) taken: usize,
-    /// The end of each waiting state in its file, if states wait until the end of the simulation.
-    waiting: Option<Vec<u64>>,
+    /// The file of waiting states and the end of each in it, if states wait until the end of the simulation.
+    waiting: Option<(Grown, Vec<u64>)>,
 }
 
 /// A last state that fits, as bytes, and the final width of the body relative to it; `None` if the run does not
@@ -48,9 +46,9 @@ pub(crate) struct Progress {
 type StoredFit = Option<(Vec<u8>, f64)>;
 
 impl Progress {
-    /// The length of the file with waiting states (bytes).
-    pub(crate) fn waiting_length(&self) -> u64 {
-        self.waiting.as_ref().and_then(|ends| ends.last()).copied().unwrap_or(0)
+    /// The file with waiting states.
+    pub(crate) fn waiting(&self) -> Option<Grown> {
+        self.waiting.as_ref().map(|(grown, _)| *grown)
     }
 }
 
@@ -86,13 +84,14 @@ pub(crate) enum Next {
 impl<'a> Frames<'a> {
     /// Frames of a runner at its start, in rising order. With a file for `waiting` states the runner must record time
     /// series, and everything is simulated before the first frame is returned.
-    pub(crate) fn new(runner: Runner<'a>, frames: &[u64], waiting: Option<File>) -> Self {
+    pub(crate) fn new(runner: Runner<'a>, frames: &[u64], waiting: Option<Growing>) -> Self {
         let source = match waiting {
-            Some(file) => Source::Waiting(Waiting { states: Store::new(file), reached: 0, is_known: false }),
+            Some(file) => {
+                Source::Waiting(Waiting { states: Store { file, ends: Vec::new() }, reached: 0, is_known: false })
+            }
             None => Source::Simulated,
         };
-        let before = vec![0; runner.runs.len()];
-        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, before, known: None, source }
+        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, known: None, source }
     }
 
     /// The progress of the simulation; `None` once it is finished. Waiting states are on the disk then.
@@ -104,8 +103,7 @@ impl<'a> Frames<'a> {
         let waiting = match source {
             Source::Simulated if *taken < frames.len() => None,
             Source::Waiting(Waiting { states, is_known: false, .. }) => {
-                states.file.sync_data()?;
-                Some(states.ends.clone())
+                Some((states.file.sync()?, states.ends.clone()))
             }
             _ => return Ok(None),
         };
@@ -130,12 +128,14 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// The progress belongs to other runs or frames.
     pub(crate) fn resume(&mut self, progress: Progress) -> io::Result<()> {
-        let Self { runner, frames, taken, before, source, .. } = self;
+        let Self { runner, frames, taken, source, .. } = self;
         let Progress { states, history, last_fits, met, taken: returned, waiting } = progress;
         let runs = runner.runs.len();
         let reached = match (source, waiting) {
             (Source::Simulated, None) => Some(returned),
-            (Source::Waiting(to_fill), Some(ends)) if returned == 0 && ends.is_sorted() => {
+            (Source::Waiting(to_fill), Some((grown, ends)))
+                if returned == 0 && ends.is_sorted() && ends.last().copied().unwrap_or(0) == grown.length =>
+            {
                 (to_fill.reached, to_fill.states.ends) = (ends.len() / runs.max(1), ends);
                 Some(to_fill.reached)
             }
@@ -171,7 +171,6 @@ impl<'a> Frames<'a> {
             }
         }
         *taken = returned;
-        *before = runner.runs.iter().map(|running| running.world.steps()).collect();
         Ok(())
     }
 
@@ -254,10 +253,10 @@ impl<'a> Frames<'a> {
         Some([times.fold(f64::INFINITY, f64::min), self.runner.scene.frame_time(end)])
     }
 
-    /// The steps of each run in this process.
+    /// The simulated steps of each run so far, with those of earlier processes.
     pub(crate) fn simulated(&self) -> Vec<u64> {
-        let runs = self.reached().into_iter().zip(&self.before).zip(&self.runner.runs);
-        runs.map(|((steps, before), running)| if running.recording.is_some() { 0 } else { steps - before }).collect()
+        let runs = self.reached().into_iter().zip(&self.runner.runs);
+        runs.map(|(steps, running)| if running.recording.is_some() { 0 } else { steps }).collect()
     }
 
     /// The steps of each run so far.
@@ -281,6 +280,11 @@ impl<'a> Frames<'a> {
     pub(crate) fn last_fit(&self, place: usize) -> Option<Option<(&State, f64)>> {
         let found = self.runner.runs[place].last_fit.get()?;
         Some(found.as_ref().map(|found| (&found.state, found.shown.times_wider)))
+    }
+
+    /// The time series so far, empty once they were returned.
+    pub(crate) fn series(&self) -> impl Iterator<Item = &TimeSeries> {
+        self.runner.runs.iter().map(|running| &running.series)
     }
 
     /// The time series so far, unless they were returned.
@@ -311,28 +315,22 @@ impl<'a> Frames<'a> {
 
 /// Blocks of bytes in a file.
 struct Store {
-    file: File,
+    file: Growing,
     /// The end of each block.
     ends: Vec<u64>,
 }
 
 impl Store {
-    fn new(file: File) -> Self {
-        Self { file, ends: Vec::new() }
-    }
-
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let end = self.file.seek(SeekFrom::End(0))?;
-        self.file.write_all(bytes)?;
-        self.ends.push(end + bytes.len() as u64);
+        self.file.append(bytes)?;
+        self.ends.push(self.ends.last().unwrap_or(&0) + bytes.len() as u64);
         Ok(())
     }
 
     fn get(&mut self, piece: usize) -> io::Result<Vec<u8>> {
         let (start, end) = (piece.checked_sub(1).map_or(0, |before| self.ends[before]), self.ends[piece]);
         let mut bytes = vec![0; (end - start) as usize];
-        self.file.seek(SeekFrom::Start(start))?;
-        self.file.read_exact(&mut bytes)?;
+        self.file.read_at(start, &mut bytes)?;
         Ok(bytes)
     }
 }
@@ -343,7 +341,7 @@ mod tests {
 
     #[test]
     fn pieces_come_back() {
-        let mut store = Store::new(tempfile::tempfile().unwrap());
+        let mut store = Store { file: Growing::new(tempfile::tempfile().unwrap()), ends: Vec::new() };
         let piece = |at: usize| vec![at as u8; [300, 30, 9000, 0, 1][at]];
         (0..5).for_each(|at| store.put(&piece(at)).unwrap());
         assert!([4, 0, 2, 3, 1].into_iter().all(|at| store.get(at).unwrap() == piece(at)));

@@ -134,7 +134,7 @@ impl NearObstacles {
 
 /// The moments of the time series of a run, rising: all frames with moments between them, or evenly chosen frames. The
 /// beginning of the scene and the interval `closer` (s) each have as many moments as the whole scene usually has; the steps
-/// nearest to each of `shown` (s) are added.
+/// nearest to each of `shown` (s), and to rows of `diagnostics.csv` between frames, are added.
 pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, shown: &[f64]) -> Vec<Moment> {
     let last = scene.last_frame();
     let rate = scene.frames_per_second;
@@ -153,7 +153,9 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
     let closely = std::iter::once(early).chain(closer).flat_map(|[start, end]| {
         (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
     });
-    let more = closely.chain(shown.iter().copied()).map(Moment::at);
+    let rows = scene.every.map_or(0, |every| 1 + (scene.duration / every) as u64);
+    let rows = (0..rows).filter_map(|number| scene.row_moment(number));
+    let more = closely.chain(shown.iter().copied()).map(Moment::at).chain(rows);
     moments.extend(more.map(|moment| if world.steps_at(moment) > end { scene.moment(last) } else { moment }));
     moments.sort_by_key(|&moment| world.steps_at(moment));
     moments.dedup_by_key(|moment| world.steps_at(*moment));

@@ -3,6 +3,7 @@
 
 pub(crate) mod cause;
 mod frames;
+pub(crate) mod growing;
 pub(crate) mod history;
 mod last_fit;
 mod meetings;
@@ -459,7 +460,7 @@ mod tests {
         let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
         let take = |whole_series: bool, slice: u64| {
             let runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
-            let waiting = whole_series.then(|| tempfile::tempfile().unwrap());
+            let waiting = whole_series.then(|| growing::Growing::new(tempfile::tempfile().unwrap()));
             let mut frames = Frames::new(runner, &[0, 2], waiting);
             let (mut taken, mut series) = (Vec::new(), None);
             loop {

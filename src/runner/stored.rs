@@ -37,9 +37,11 @@ impl Stored {
             Ok((recordings, postcard::from_bytes(&history).unwrap_or_default()))
         };
         let (recordings, mut history): (_, Option<History>) = read().map_err(|flaw| flaw.to_string())?;
-        if scene.time_series().is_some() && history.is_none() {
+        if (scene.time_series().is_some() || scene.every.is_some()) && history.is_none() {
             let help = "simulate it again with --states and all frames, or with --frames up to the last one";
-            return Err(format!("lacks the course of the scene to its end, which its pictures show; {help}"));
+            return Err(format!(
+                "lacks the course of the scene to its end, which its pictures or `every` show; {help}"
+            ));
         }
         history.iter_mut().for_each(|history| history.series.retain(|series| runs.contains(&series.run)));
         Ok(Self { path: path.to_owned(), recordings, history })

@@ -80,6 +80,8 @@ pub struct Scene {
     pub duration: f64,
     /// Frames per second of simulated time (1/s).
     pub frames_per_second: f64,
+    /// Time between rows of `diagnostics.csv` (s), if it has rows between frames.
+    pub every: Option<f64>,
     /// The bodies.
     pub bodies: Vec<SceneBody>,
     /// The runs, one for each panel.
@@ -345,6 +347,18 @@ impl Scene {
     /// The moment that a frame shows.
     pub fn moment(&self, frame: u64) -> Moment {
         Moment { count: frame as f64, rate: self.frames_per_second }
+    }
+
+    /// The moment of a row of `diagnostics.csv`, by its number; `None` if there are only rows of frames.
+    pub(crate) fn row_moment(&self, number: u64) -> Option<Moment> {
+        Some(Moment::at(number as f64 * self.every?))
+    }
+
+    /// Whether a step of a run, with its time (s), is that of such a moment.
+    pub(crate) fn has_row(&self, run: usize, time: f64) -> bool {
+        let step = self.runs[run].step;
+        let nearest = self.every.and_then(|every| self.row_moment((time / every).round() as u64));
+        nearest.is_some_and(|moment| moment.step(step) == Moment::at(time).step(step))
     }
 
     /// The step of a run that a frame shows: `round(n / (frames_per_second · ΔT))`.

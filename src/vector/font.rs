@@ -130,3 +130,7 @@ fn checksum(table: &[u8]) -> u32 {
     let number = |four: &[u8]| four.iter().enumerate().map(|(at, &byte)| u32::from(byte) << (24 - 8 * at)).sum::<u32>();
     table.chunks(4).map(number).fold(0, u32::wrapping_add)
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/font.rs"]
+mod tests;

@@ -43,6 +43,19 @@ fn simulate_on_a_full_disk() {
     assert!(["\"outcome\": \"failed\",", "\"outcome\": \"unfinished\","].contains(&lines[3].trim()), "{ran:?}");
 }
 
+/// The system ends programs that exceed such a limit, unless they handle its signal.
+#[test]
+fn a_limit_on_the_size_of_files_is_told() {
+    let place = Place::new();
+    place.write("long.toml", &lasting("20"));
+    let script = format!("ulimit -f 16; exec '{}' simulate long.toml -o out", env!("CARGO_BIN_EXE_localshape"));
+    let ran = run(Command::new("sh").args(["-c", &script]).current_dir(place.path(".")));
+    ran.bad(4, &["cannot write out/diagnostics.csv: it is larger than the system permits (`ulimit -f`)"]);
+    assert_eq!(place.json("out/run.json")["outcome"], "failed");
+    assert!(place.read("out/diagnostics.csv").ends_with(",ok\n"), "whole rows of whole frames");
+    place.run("simulate long.toml -o out --resume").good();
+}
+
 #[test]
 fn states_on_a_full_disk() {
     let place = Place::new();

@@ -2,6 +2,7 @@
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command};
 use localshape::internals::{Shown, Tags, read_tags, skipped};
+use localshape::runner::History;
 use localshape::{AdapterChoice, FrameFolder, Gpu, Limits, Renderer, Runner, Scene, compose};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -463,5 +464,37 @@ fn widths_of_vectors_that_crash_the_driver_are_not_passed_on() {
         assert!(width == "512" || frame("made") == frame("usual"), "{width}");
         let mut command = place.command(["render", "small.toml", "--frames", "3", "-o", "quiet", "--overwrite", "-q"]);
         assert_eq!(run_command(command.env("LP_NATIVE_VECTOR_WIDTH", width)).err, "", "{width}");
+    }
+}
+
+/// A chart names values between frames, which `run.json` has, too.
+#[test]
+fn charts_and_numbers_agree() {
+    let place = Place::new();
+    place.write("disc.toml", &crate::support::disc("2").replace(", every = 0.004", ", frames_per_second = 5"));
+    place.run("render disc.toml -o out").good();
+    let scene = Scene::load(&place.path("disc.toml"), &Limits::default()).expect("a scene");
+    let history = History::for_pictures(&scene, &[0]);
+    let series = &history.series[0];
+    let curve = series.times.iter().zip(&series.diagnostics).map(|(&time, all)| [all.kinetic, time]);
+    let most = curve.reduce(|one, other| if other[0] > one[0] { other } else { one }).expect("moments");
+    let run = place.json("out/run.json")["runs"][0].clone();
+    let told = |end: &str, key: &str| ["value", "time"].map(|part| run[end][key][part].as_f64().expect("a number"));
+    assert_eq!(told("greatest", "kinetic"), most);
+    let text = place.read("out/diagnostics.csv");
+    let columns = |row: &str| -> Vec<f64> { row.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect() };
+    let rows: Vec<_> = text.lines().skip(1).map(columns).collect();
+    let of_frames = rows.iter().map(|row| row[4]).fold(0.0, f64::max);
+    assert!(of_frames < most[0], "{of_frames} {most:?}");
+    // No chart shows the elastic energy.
+    let most = rows.iter().map(|row| [row[5], row[3]]).reduce(|one, other| if other[0] > one[0] { other } else { one });
+    assert_eq!(Some(told("greatest", "elastic")), most);
+    assert!(run["greatest"].get("broken").is_none(), "its model has none");
+    // The same from stored states.
+    place.run("render disc.toml --states -o states").good();
+    place.run("render disc.toml --from-states states/states.npz -o stored").good();
+    for folder in ["states", "stored"] {
+        let other = place.json(&format!("{folder}/run.json"))["runs"][0].clone();
+        assert_eq!((&other["least"], &other["greatest"]), (&run["least"], &run["greatest"]), "{folder}");
     }
 }

@@ -2,6 +2,8 @@
 #![cfg(unix)]
 
 use crate::interrupt::{results, signal, start};
+#[cfg(feature = "render")]
+use crate::support::disc;
 use crate::support::{Place, Ran, Running, lasting};
 use std::collections::BTreeMap;
 
@@ -13,9 +15,14 @@ fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
     names.map(|name| (name.clone(), std::fs::read(place.path(folder).join(name)).unwrap())).collect()
 }
 
-/// The steps of the first run in the last command.
+/// The steps of the first run, with those before interruptions.
 fn steps(place: &Place, folder: &str) -> u64 {
     place.json(&format!("{folder}/run.json"))["runs"][0]["steps"].as_u64().unwrap()
+}
+
+/// What `run.json` tells of the runs.
+fn told(place: &Place, folder: &str) -> serde_json::Value {
+    place.json(&format!("{folder}/run.json"))["runs"].clone()
 }
 
 /// Starts a command that makes a folder, and ends it by a signal after a while, but not before a file exists.
@@ -54,17 +61,18 @@ fn after_ctrl_c_it_goes_on_from_there() {
     let ran = place.run("simulate scene.toml -o out --resume");
     ran.bad(2, &["to go on from it, type that command with --resume: ", "simulate scene.toml --states -o out"]);
     let before = steps(&place, "out");
+    assert!(before > 0);
     // A second interruption, on the way.
     let typed = format!("{typed} --resume");
     let running = again(&place, &typed);
     signal(&running, &["TERM"]);
     let ran = running.wait();
     assert!([Some(130), Some(0)].contains(&ran.status), "{ran:?}");
-    let between = steps(&place, "out");
+    assert!(steps(&place, "out") >= before);
     if ran.status == Some(130) {
         place.run(&typed).good();
-        assert_eq!(before + between + steps(&place, "out"), steps(&place, "whole"), "no step is taken twice");
     }
+    assert_eq!(told(&place, "out"), told(&place, "whole"), "all steps and all extremes");
     assert!(files(&place, "out") == files(&place, "whole"));
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
 }
@@ -93,10 +101,10 @@ fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
     assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
     // The lock has gone with its process; a running process holds it.
     let running = again(&place, &format!("{typed} --resume"));
-    place.run(&format!("{typed} --resume")).bad(2, &["out is in use: process ", "is writing there"]);
+    place.run(&format!("{typed} --resume")).bad(2, &["out is in use: another process is writing there"]);
     running.wait().good();
     place.run("simulate scene.toml --states -o whole").good();
-    assert!(steps(&place, "out") < steps(&place, "whole"), "it has not begun anew");
+    assert_eq!(told(&place, "out"), told(&place, "whole"));
     assert!(files(&place, "out") == files(&place, "whole"));
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
 }
@@ -119,13 +127,11 @@ fn pictures_go_on_too() {
         assert!(ran.status == Some(130) && ran.out.contains("to go on: "), "{ran:?}");
         assert!(place.path(name).join(CHECKPOINT).exists(), "{name}");
         let kept = place.names(name).iter().filter(|name| name.ends_with(".png")).count() as u64;
-        let before = steps(&place, name);
         let ran = place.run(&format!("{typed} --resume")).good();
         assert!(ran.out.contains("19 frames of 96×64"), "{ran:?}");
-        let (again, resumed) = (crate::parts::drawn_and_kept(&place, name), steps(&place, name));
-        assert_eq!(again, [19 - kept, kept], "{name}");
+        assert_eq!(crate::parts::drawn_and_kept(&place, name), [19 - kept, kept], "{name}");
         place.run(&format!("render {name}.toml --frames {frames} --states -o whole --overwrite")).good();
-        assert_eq!(before + resumed, steps(&place, "whole"), "{name}: no step is taken twice");
+        assert_eq!(told(&place, name), told(&place, "whole"), "{name}");
         assert!(files(&place, name) == files(&place, "whole"), "{name}");
         assert!(place.names(name).iter().all(|name| !name.starts_with('.')), "nothing else is left");
     }
@@ -165,7 +171,7 @@ fn a_checkpoint_of_something_else_is_refused() {
     let bytes = std::fs::read(&path).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
     let ran = place.run("simulate scene.toml --resume");
-    ran.bad(2, &["the checkpoint in output/scene is damaged or cut short; to begin anew, leave out --resume"]);
+    ran.bad(2, &["the checkpoint in output/scene is damaged or cut short (.localshape-checkpoint.partial); to begin anew, leave out --resume"]);
     std::fs::write(&path, &bytes).unwrap();
     std::fs::write(place.path("output/scene/diagnostics.csv"), "run,frame\n").unwrap();
     let ran = place.run("simulate scene.toml --resume");
@@ -213,4 +219,115 @@ fn without_its_frames_a_checkpoint_is_refused() {
     place.run("render scene.toml -o out --resume").good();
     place.run("render scene.toml -o whole").good();
     assert!(files(&place, "out") == files(&place, "whole"));
+}
+
+/// Flips bits all over the first bytes of a hidden file, one at a time. A command is to refuse each by the name of the file.
+fn flip(place: &Place, name: &str, length: usize, command: &str) {
+    const PLACES: usize = 24;
+    let path = place.path("out").join(name);
+    let bytes = std::fs::read(&path).unwrap();
+    assert!(length >= PLACES && length <= bytes.len(), "{name}: {length} of {} bytes", bytes.len());
+    for number in 0..PLACES {
+        let mut damaged = bytes.clone();
+        damaged[number * (length - 1) / (PLACES - 1)] ^= 1 << (number % 8);
+        std::fs::write(&path, &damaged).unwrap();
+        let ran = place.run(command);
+        // The digits of a checkpoint's version say that another version has written it.
+        let is_version = ran.err.contains("was written by another version");
+        let words = if is_version { "the checkpoint in out" } else { name };
+        ran.bad(2, &["the checkpoint in out ", words, "leave out --resume"]);
+        assert!(std::fs::read(&path).unwrap() == damaged, "nothing is lost");
+    }
+    std::fs::write(&path, bytes).unwrap();
+}
+
+#[test]
+fn damage_to_what_waits_is_refused() {
+    let place = Place::new();
+    place.write("scene.toml", &seconds());
+    let typed = "simulate scene.toml --states -q -o out";
+    place.run("simulate scene.toml --states -q -o whole").good();
+    stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
+    for (name, parts) in [(CHECKPOINT, 1), (".localshape-diagnostics.partial", 2), (".localshape-states.partial", 2)] {
+        // Rows and states after the checkpoint are not used.
+        let length = std::fs::metadata(place.path("out").join(name)).unwrap().len() as usize / parts;
+        flip(&place, name, length, &format!("{typed} --resume"));
+    }
+    place.run(&format!("{typed} --resume")).good();
+    assert!(files(&place, "out") == files(&place, "whole"), "restored, they are used");
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn damage_to_states_that_wait_to_be_drawn_is_refused() {
+    let place = Place::new();
+    place.write("scene.toml", &disc("2000").replace(", every = 0.004", ""));
+    let typed = "render scene.toml --frames 0-120000x10000 -q -o out";
+    let name = ".localshape-frames.partial";
+    let length = || std::fs::metadata(place.path("out").join(name)).map_or(0, |found| found.len() as usize);
+    let mut running = start(&place, typed, "out/run.json");
+    running.until("states that wait", |_| length() > 1000);
+    signal(&running, &["INT"]);
+    assert_eq!(running.wait().status, Some(130));
+    flip(&place, name, length(), &format!("{typed} --resume"));
+    place.run(&format!("{typed} --resume")).good();
+    place.run(&typed.replace("out", "whole")).good();
+    assert!(files(&place, "out") == files(&place, "whole"), "restored, they are used");
+}
+
+/// The animation has the same bytes, with frames that are kept and with frames that are not.
+#[cfg(feature = "render")]
+#[test]
+fn animations_go_on_too() {
+    let (whole, place) = (Place::new(), Place::new());
+    let scene = disc("60").replace("charts", "camera.distance = 1\nlabels");
+    let scene = scene.replace("[\"kinetic\"]", "[\"clock\"]");
+    [&whole, &place].into_iter().for_each(|place| place.write("scene.toml", &scene));
+    let films = "--animate film.gif --animate film.apng --frames 0-3600x12";
+    for (options, folder) in [("", "out"), (" --no-frames", "out/.localshape-pictures.partial")] {
+        let typed = format!("render scene.toml {films}{options} -o out");
+        whole.run(&format!("{typed} --overwrite")).good();
+        let ran = stopped(&place, &typed, &format!("{folder}/frame_00036.png"), "INT");
+        assert!(ran.status == Some(130) && ran.out.contains("to go on: "), "{ran:?}");
+        assert!(place.path("out").join(CHECKPOINT).exists());
+        place.run(&format!("{typed} --resume")).good();
+        // The command differs by more than `--resume`.
+        whole.run(&typed).good();
+        for film in ["film.gif", "film.apng"] {
+            let [one, other] = [&whole, &place].map(|place| std::fs::read(place.path(film)).unwrap());
+            assert!(one == other, "{film}{options}");
+        }
+        assert!(files(&place, "out") == files(&whole, "out"), "{options}");
+        assert!(place.names("out").iter().all(|name| !name.starts_with('.')), "{:?}", place.names("out"));
+        [&whole, &place].into_iter().for_each(|place| std::fs::remove_dir_all(place.path("out")).unwrap());
+    }
+}
+
+/// A killed command leaves an unfinished animation beside the one that it makes.
+#[cfg(feature = "render")]
+#[test]
+fn what_is_left_of_an_animation_goes() {
+    let place = Place::new();
+    place.write("scene.toml", &disc("0.1"));
+    for options in ["", " --resume", " --no-frames --overwrite"] {
+        place.write(".localshape-film.gif-Ab12Cd.partial", "GIF89a");
+        place.run(&format!("render scene.toml --animate film.gif -o out{options}")).good();
+        assert_eq!(place.names("."), ["film.gif", "out", "scene.toml"], "{options}");
+    }
+}
+
+/// Rows between frames and extremes are those of a whole command, whether states wait to be drawn or not.
+#[test]
+fn rows_between_frames_go_on() {
+    let place = Place::new();
+    place.write("scene.toml", &lasting("60").replace("frames_per_second = 60", "frames_per_second = 6\nevery = 0.003"));
+    place.run("simulate scene.toml -q -o whole").good();
+    let ran = stopped(&place, "simulate scene.toml -o out", "out/run.json", "INT");
+    assert_eq!(ran.status, Some(130), "{ran:?}");
+    place.run("simulate scene.toml -o out --resume").good();
+    assert!(files(&place, "out") == files(&place, "whole"));
+    assert_eq!(told(&place, "out"), told(&place, "whole"));
+    let between = place.read("whole/diagnostics.csv").lines().filter(|line| line.contains(",all,,")).count();
+    // 60 s have 20 001 rows for each run, at most 361 of them of frames.
+    assert!((2 * (20_001 - 361)..2 * 20_001).contains(&between), "{between}");
 }

@@ -111,7 +111,7 @@ fn checkpoints_are_left_alone() {
     let simulate = "simulate scene.toml -o made";
     let running = crate::interrupt::start(&place, simulate, "made/run.json");
     let shard = "render scene.toml --frames 0-9 --shard 1/2 -o made";
-    place.run(shard).bad(2, &["made is in use: process ", " is writing there"]);
+    place.run(shard).bad(2, &["made is in use: another process is writing there"]);
     crate::interrupt::signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
     let hidden = |place: &Place| -> Vec<(String, Vec<u8>)> {

@@ -372,6 +372,12 @@ fn everything_in_the_files_is_documented() {
     (run["frames"]["kept"], run["set"]) = (1.into(), serde_json::json!(["time.duration=5"]));
     let of_bodies = place.json("output/bodies/run.json");
     let [mut found, mut told] = [[ways(&run, ""), ways(&of_bodies, "")].concat(), documented("run.json")];
+    // All diagnostics have the same keys.
+    for way in &mut found {
+        for diagnostic in Diagnostic::ALL {
+            *way = way.replace(&format!("st.{}.", diagnostic.key()), "st.KEY.");
+        }
+    }
     found.sort();
     found.dedup();
     told.sort();
@@ -571,4 +577,80 @@ fn bodies_that_go_through_each_other_are_told_once() {
     let ran = place.run("simulate pair.toml --overwrite").err;
     assert_eq!(ran.lines().filter(|line| line.contains(all)).count(), 1, "{ran}");
     assert!(ran.contains("\"cube\" and \"block\" overlap at the start"), "{ran}");
+}
+
+/// Rows on request: each step has one, and the rows of frames are those of a scene without them.
+#[test]
+fn rows_between_frames() {
+    let place = Place::with_small();
+    place.write("rows.toml", &SMALL.replace("frames_per_second", "every = 1e-6\nframes_per_second"));
+    place.run("simulate small.toml rows.toml -o out").good();
+    let rows = |scene: &str| -> Vec<Vec<String>> {
+        let text = place.read(&format!("out/{scene}/diagnostics.csv"));
+        text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    };
+    let (frames, all) = (rows("small"), rows("rows"));
+    let of_frames: Vec<_> = all.iter().filter(|row| !row[2].is_empty()).cloned().collect();
+    assert_eq!(of_frames, frames);
+    let run = place.json("out/rows/run.json")["runs"].clone();
+    for (at, name) in ["Local shape", "Mass-spring"].into_iter().enumerate() {
+        let own: Vec<_> = all.iter().filter(|row| row[0] == name).collect();
+        let number = |row: &[String], column: usize| row[column].parse::<f64>().expect("a number");
+        let step = number(own[1], 3);
+        assert_eq!(own.len() as u64, 1 + run[at]["steps"].as_u64().expect("a count"), "each step once");
+        assert!(own.iter().enumerate().all(|(number_of, row)| number(row, 3) == number_of as f64 * step));
+        // The column of the elastic energy, which frames miss.
+        let elastic =
+            |rows: &[&Vec<String>]| rows.iter().map(|row| [number(row, 5), number(row, 3)]).collect::<Vec<_>>();
+        let most = elastic(&own).into_iter().reduce(|a, b| if b[0] > a[0] { b } else { a }).expect("rows");
+        let told = ["value", "time"].map(|key| run[at]["greatest"]["elastic"][key].as_f64().expect("a number"));
+        assert_eq!(told, most);
+        let of_frames: Vec<_> = own.iter().copied().filter(|row| !row[2].is_empty()).collect();
+        let most_of_frames = elastic(&of_frames).into_iter().map(|[value, _]| value).fold(0.0, f64::max);
+        assert!(most_of_frames < most[0], "{most_of_frames} {most:?}");
+        let told = place.json("out/small/run.json")["runs"][at]["greatest"]["elastic"]["value"].as_f64();
+        assert_eq!(told, Some(most_of_frames), "without rows between frames, it is that of frames");
+    }
+    place.write("rows.toml", &SMALL.replace("frames_per_second", "every = 0.004\nframes_per_second"));
+    place.run("simulate rows.toml --frames 2-4 -o part").good();
+    let text = place.read("part/diagnostics.csv");
+    let times: Vec<f64> = text
+        .lines()
+        .filter(|line| line.starts_with("Local"))
+        .map(|line| line.split(',').nth(3).and_then(|time| time.parse().ok()).expect("a time"))
+        .collect();
+    let step = run[0]["time_step"].as_f64().expect("a step");
+    // Frames at 2/60, 3/60 and 4/60 s.
+    let near = [2.0 / 60.0, 0.036, 0.04, 0.044, 0.048, 3.0 / 60.0, 0.052, 0.056, 0.06, 0.064, 4.0 / 60.0];
+    assert!(
+        times.len() == near.len() && times.iter().zip(near).all(|(time, near)| (time - near).abs() <= 0.5001 * step)
+    );
+    place.write("rows.toml", &SMALL.replace("frames_per_second", "every = 1e-8\nframes_per_second"));
+    place.run("check rows.toml").bad(2, &["rows.toml:5:12: ", "0.1 s with a row every 0.00000001 s make 1.000e7 rows"]);
+}
+
+/// Rows of each of several bodies, up to the last finite state of a run that diverges.
+#[test]
+fn rows_between_frames_of_bodies_that_diverge() {
+    let place = Place::new();
+    // The cube diverges between the first frame and the second.
+    let scene = crate::bodies::of_their_own().replace("step = 5e-4", "step = 0.02\nevery = 0.02");
+    place.write("bodies.toml", &scene.replace("= 0.1\nstep", "= 1.0\nstep").replace("= 60\n", "= 10\n"));
+    place.run("simulate bodies.toml -o out").too_large_steps();
+    let text = place.read("out/diagnostics.csv");
+    let runs = place.json("out/run.json")["runs"].clone();
+    let run = &runs[0];
+    assert_eq!((&run["status"], run["bodies"].as_array().map(Vec::len)), (&"diverged".into(), Some(2)));
+    let end = run["time"].as_f64().expect("a time");
+    let rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>()).filter(|row| row[0] == "all");
+    let (own, of_frames): (Vec<_>, Vec<_>) = rows.partition(|row| row[2].is_empty());
+    assert!(own.len() > 9 && own.iter().all(|row| row.last() == Some(&"ok")));
+    assert!(own.iter().all(|row| row[3].parse::<f64>().expect("a time") < end));
+    let bodies: std::collections::BTreeSet<_> = own.iter().map(|row| row[1]).collect();
+    assert_eq!(bodies, ["all", "ball", "cube"].into());
+    // The last finite state has the greatest energy. Later frames show it again.
+    let most = ["value", "time"].map(|key| run["greatest"]["kinetic"][key].as_f64().expect("a number"));
+    let of_all = of_frames.iter().rfind(|row| row[1] == "all").expect("frames");
+    assert_eq!(most[0], of_all[4].parse::<f64>().expect("a number"));
+    assert!((most[1] - (end - 0.02)).abs() < 1e-9, "{most:?}");
 }

@@ -62,6 +62,18 @@ pub(crate) fn lasting(duration: &str) -> String {
     SMALL.replace("duration = 0.1", &format!("duration = {duration}")).replace("[view]", "[view]\ncamera.distance = 2")
 }
 
+/// A disc in the plane that falls on a floor for some time (s), with a chart of its energy.
+#[cfg(feature = "render")]
+pub(crate) fn disc(duration: &str) -> String {
+    format!(
+        "title = \"A disc\"\ngravity = [0, -9.8]\ntime = {{ duration = {duration}, every = 0.004 }}\n\
+         body = {{ fan = {{ sides = 6, radius = 0.1 }}, lowest = 0.05, velocity = [0, -2] }}\n\
+         obstacle = [{{ kind = \"floor\", restitution = 0.9 }}]\n\
+         [[run]]\nname = \"Local shape\"\nmodel = {{ kind = \"shape-based\", stiffness = 1e4 }}\n\
+         [view]\nsize = [160, 120]\ncharts = [\"kinetic\"]\n"
+    )
+}
+
 /// A folder for running the program; removed when dropped.
 pub(crate) struct Place(TempDir);
 

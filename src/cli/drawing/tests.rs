@@ -53,7 +53,7 @@ fn a_lost_device_loses_no_frame_that_was_drawn() {
     let asked: Vec<_> = (0..6).collect();
     let summary = || Summary::new(&scene, &[0, 1], asked.len(), &[]);
     let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
-    let [broken, sound] = [&folders[0], &folders[1]].map(TempDir::path);
+    let [broken, sound] = [&folders[0], &folders[1]].map(tempfile::TempDir::path);
 
     let mut pictures = Drawing::begin(&device(&gpu, false), &scene, broken, &asked).map(Box::new).expect("a device");
     frames[..=DRAWN].iter().for_each(|frame| pictures.draw(frame).expect("a device"));

@@ -40,3 +40,7 @@ impl Surface {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/inside/surface.rs"]
+mod tests;

@@ -20,8 +20,8 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, Side,
-    StepFile, TimeFile,
+    BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, Positive, RegionFile, RunFile,
+    SceneFile, Side, StepFile, TimeFile,
 };
 use super::resolve::lists::check_unwritten;
 use super::resolve::{SceneParts, places};
@@ -88,6 +88,7 @@ impl Scene {
                 step: None,
                 tolerance: None,
                 frames_per_second: 60.0,
+                every: None,
                 integrator: Integrator::default(),
             },
             body: vec![body.0],
@@ -118,6 +119,8 @@ impl SceneBuilder {
         integrator(integrator: Integrator) 0.time.integrator = integrator;
         /// Frames per second of simulated time (1/s).
         frames_per_second(rate: f64) 0.time.frames_per_second = rate;
+        /// Time between rows of `diagnostics.csv` (s), which then has rows between frames.
+        every(seconds: f64) 0.time.every = Some(Positive(seconds));
     }
 
     /// Adds a body. Each of several bodies needs a unique [name](BodyBuilder::name).

@@ -90,6 +90,9 @@ pub(in crate::scene) struct TimeFile {
     #[serde(default = "sixty")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) frames_per_second: f64,
+    /// Time between rows of `diagnostics.csv` (s), which then has rows between frames, of the nearest steps. With the time
+    /// step or less each step has a row, which takes several times as long as a step. Default: only frames have rows.
+    pub(in crate::scene) every: Option<Positive>,
     /// The integrator, which advances positions and velocities by one step.
     #[serde(default)]
     pub(in crate::scene) integrator: Integrator,

@@ -14,7 +14,7 @@ mod recordings;
 mod runs;
 
 use super::digest::{FileDigests, digest};
-use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, SceneFile, TimeFile};
+use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, Positive, RunFile, SceneFile, TimeFile};
 use super::generate::Generator;
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
@@ -257,6 +257,8 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[PathPart<'_>], report: &mut Co
 
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
+/// The most rows of `diagnostics.csv` between frames for each run: they stay in memory until its end.
+const MOST_ROWS: f64 = 1e6;
 
 /// The physics. A part is `None` if it has a mistake, or depends on a part with one.
 struct Physics {
@@ -298,6 +300,7 @@ fn resolve(
         gravity: physics.gravity?,
         duration: time.duration,
         frames_per_second: time.frames_per_second,
+        every: time.every.map(|every| every.0),
         bodies: bodies.iter().map(scene_body).collect(),
         runs: physics.runs?,
         obstacles: physics.obstacles?,
@@ -597,15 +600,17 @@ fn warn_of_sizes(scene: &Scene, parts: &SceneParts, report: &mut Collector<'_>) 
 }
 
 fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {
-    let frames = time.duration * time.frames_per_second;
-    if frames > MOST_FRAMES {
-        let message = format!(
-            "{} s at {} frames per second make {frames:.3e} frames; the most is {}",
-            time.duration,
-            time.frames_per_second,
-            count(MOST_FRAMES as u128)
-        );
-        let help = "make `duration` or `frames_per_second` smaller".to_owned();
-        report.at(&key_path!["time", "duration"], message, help);
+    let TimeFile { duration, frames_per_second: rate, .. } = time;
+    let mut check = |number: f64, key: &str, made: &str, most: f64, help: &str| {
+        if number > most {
+            let message = format!("{duration} s {made} make {number:.3e} {key}; the most is {}", count(most as u128));
+            report.at(&key_path!["time", "duration"], message, help.to_owned());
+        }
+    };
+    let made = format!("at {rate} frames per second");
+    check(duration * rate, "frames", &made, MOST_FRAMES, "make `duration` or `frames_per_second` smaller");
+    if let Some(Positive(every)) = time.every {
+        let made = format!("with a row every {every} s");
+        check(duration / every, "rows", &made, MOST_ROWS, "make `duration` smaller, or `every` larger");
     }
 }

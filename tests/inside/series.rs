@@ -1,0 +1,93 @@
+//! Time series in charts: their range, their steps and their mean.
+
+use super::*;
+use crate::scene::Limits;
+use crate::sim::Diagnostics;
+
+/// Values at 0, 1, 2 … s.
+fn series(values: &[f64], diverged: bool) -> Series {
+    let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
+    let style = LineStyle { colour: [0; 3], dash: &[] };
+    let diverged = diverged.then_some(values.len() as f64);
+    let (name, members) = Default::default();
+    Series { run: 0, name, style, is_count: false, is_part: false, points, members, diverged, is_end: false }
+}
+
+#[test]
+fn one_range_holds_all_runs_and_zero() {
+    let range = |all: &[&[f64]]| range(&all.iter().map(|values| series(values, false)).collect::<Vec<_>>(), true);
+    assert_eq!(range(&[&[1.0, 2.0, 3.0], &[-0.5, 0.2]]), Some([-0.5, 3.0]));
+    assert_eq!(range(&[&[3.0, 2.0, 5.0]]), Some([0.0, 5.0]));
+    // A short peak is not a divergence, and neither is one run with much larger values than the other.
+    assert_eq!(range(&[&[3000.0, 1.0, 0.1, 0.1, 0.1]]), Some([0.0, 3000.0]));
+    assert_eq!(range(&[&[0.001; 8], &[0.1; 8]]), Some([0.0, 0.1]));
+    // Zero is far from a volume that hardly changes, and a constant value has some room.
+    assert_eq!(range(&[&[1.0, 1.05, 0.97]]), Some([0.97, 1.05]));
+    let [low, high] = range(&[&[1.0, 1.0]]).unwrap();
+    assert!(low < 1.0 && 1.0 < high && high - low < 0.03, "{low} {high}");
+    assert_eq!((range(&[]), range(&[&[]])), (None, None));
+    assert_eq!(range(&[&[0.0, 0.0]]), Some([0.0, 0.0]));
+}
+
+/// More moments than bodies, so that neither is taken for the other.
+#[test]
+fn each_of_several_bodies_has_a_curve_over_all_times() {
+    let bodies = ["one", "other"]
+        .map(|name| format!("[[body]]\nname = '{name}'\nlattice = {{ cells = [1, 1, 1], side = 0.1 }}\n"));
+    let text = format!(
+        "time = {{ duration = 0.1, frames_per_second = 20 }}\n{}[[run]]\nname = 'run'\n\
+         model = {{ kind = 'shape-based', stiffness = 1e4 }}",
+        bodies.concat()
+    );
+    let scene = Scene::parse(&text, "two.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let moved = |kinetic: f64| Diagnostics { kinetic, ..Diagnostics::default() };
+    let of_run = TimeSeries {
+        times: vec![0.0, 0.1, 0.2],
+        of_bodies: vec![[1.0, 2.0, 3.0].map(moved).to_vec(), [4.0, 5.0, 6.0].map(moved).to_vec()],
+        ..TimeSeries::new(0)
+    };
+    let style = LineStyle { colour: [0; 3], dash: &[] };
+    let curves: Vec<_> = Series::of_bodies(Diagnostic::Kinetic, &of_run, &scene, style).collect();
+    assert_eq!(curves.iter().map(|curve| &*curve.name).collect::<Vec<_>>(), ["one", "other"]);
+    assert_eq!(curves[1].points, [[0.0, 4.0], [0.1, 5.0], [0.2, 6.0]]);
+    assert_eq!(curves[0].points, [[0.0, 1.0], [0.1, 2.0], [0.2, 3.0]]);
+}
+
+#[test]
+fn diverged_runs_do_not_set_the_scale() {
+    let calm = series(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
+    let blown = series(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
+    assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));
+    // Lasting values are shown in full, however late they begin.
+    let late = series(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
+    assert_eq!(range(&[series(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
+    // Counts are bounded by themselves.
+    let counted = series(&[0.0, 0.0, 8.0], true);
+    assert_eq!(range(&[series(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
+    // A single run shows half of its values.
+    let alone = series(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
+    assert_eq!(range(&[alone], true), Some([0.0, 2.0]));
+}
+
+#[test]
+fn counts_go_in_steps() {
+    let steps = steps(&[[0.0, 0.0], [1.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+    assert_eq!(steps, [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+}
+
+#[test]
+fn several_scenes_have_a_mean_within_their_band() {
+    let mean = Series::mean(vec![series(&[0.0, 2.0, 4.0], false), series(&[2.0, 8.0], true)]).expect("two");
+    assert_eq!(mean.points, [[0.0, 1.0], [1.0, 5.0]]);
+    assert_eq!((mean.members.len(), mean.diverged), (2, Some(2.0)));
+    let mean_of = |ends: [f64; 2]| {
+        let of = |end| Series { diverged: Some(end), ..series(&[1.0, 2.0], false) };
+        Series::mean(ends.map(of).into()).expect("two").diverged
+    };
+    assert_eq!([mean_of([5.0, 3.0]), mean_of([3.0, 5.0])], [Some(3.0); 2], "it ends with the first divergence");
+    // The scale includes all members.
+    assert_eq!(range(std::slice::from_ref(&mean), false), Some([0.0, 8.0]));
+    // A single scene has no band.
+    let alone = Series::mean(vec![series(&[1.0], false)]).expect("one");
+    assert!(alone.members.is_empty() && alone.points == [[0.0, 1.0]]);
+}
