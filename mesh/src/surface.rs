@@ -151,10 +151,13 @@ impl Surface {
                     let place = self.triangles[one.triangle as usize].iter().position(|&corner| corner == from);
                     middles[one.triangle as usize][place.unwrap_or(0)] = Some(self.points.len() as u32);
                 }
-                for group in &groups_of[edge[0].low as usize] {
-                    if groups_of[edge[0].high as usize].contains(group) {
-                        self.groups[*group as usize].points.push(self.points.len() as u32);
-                    }
+                // Of two rising lists, the shorter one is gone through: a point in the middle of a fan may have very many groups.
+                let [mut fewer, mut more] = [edge[0].low, edge[0].high].map(|point| &groups_of[point as usize]);
+                if fewer.len() > more.len() {
+                    std::mem::swap(&mut fewer, &mut more);
+                }
+                for &group in fewer.iter().filter(|group| more.binary_search(group).is_ok()) {
+                    self.groups[group as usize].points.push(self.points.len() as u32);
                 }
                 self.points.push(middle);
             }
@@ -346,10 +349,9 @@ impl Surface {
         self.triangles.iter_mut().zip(turned).filter(|(_, turned)| **turned).for_each(|(of, _)| of.swap(1, 2));
     }
 
-    /// Whether each piece can stay as it is.
-    fn outwards(&self, piece_of: &[u32], count: usize) -> Vec<bool> {
+    /// What each of so many pieces encloses, by the piece of each triangle.
+    pub(crate) fn enclosed(&self, piece_of: &[u32], count: usize) -> Vec<Enclosed> {
         let uses = EdgeUse::all(&self.triangles);
-        // The volume of an open piece is that under a fan of triangles over the middle of its open edges.
         let mut middles = vec![(DVec3::ZERO, 0u32); count];
         for edge in uses.chunk_by(EdgeUse::same) {
             if net(edge) != 0 {
@@ -358,21 +360,26 @@ impl Surface {
                 *number += 2;
             }
         }
-        let mut firsts = vec![DVec3::ZERO; count];
+        let mut pieces = vec![Enclosed::default(); count];
         for (&triangle, &piece) in self.triangles.iter().zip(piece_of).rev() {
-            firsts[piece as usize] = self.corners(triangle)[0];
+            pieces[piece as usize].first = self.corners(triangle)[0];
         }
-        let (mut volumes, mut areas) = (vec![0.0; count], vec![0.0f64; count]);
         for (&triangle, &piece) in self.triangles.iter().zip(piece_of) {
-            let piece = piece as usize;
-            let (sum, number) = middles[piece];
-            let origin = if number > 0 { sum / f64::from(number) } else { firsts[piece] };
+            let ((sum, number), piece) = (middles[piece as usize], &mut pieces[piece as usize]);
+            piece.is_open = number > 0;
+            let origin = if piece.is_open { sum / f64::from(number) } else { piece.first };
             let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
-            volumes[piece] += a.dot(b.cross(c)) / 6.0;
-            areas[piece] += 0.5 * (b - a).cross(c - a).length();
+            piece.volume += a.dot(b.cross(c)) / 6.0;
+            piece.area += 0.5 * (b - a).cross(c - a).length();
         }
-        // A sheet that is flat but for round-off stays as it is.
-        let is_out = |piece: usize| volumes[piece] >= -1e-9 * areas[piece] * areas[piece].sqrt();
+        pieces
+    }
+
+    /// Whether each piece can stay as it is.
+    fn outwards(&self, piece_of: &[u32], count: usize) -> Vec<bool> {
+        let pieces = self.enclosed(piece_of, count);
+        // A sheet stays as it is.
+        let is_out = |piece: usize| pieces[piece].is_solid() || pieces[piece].is_sheet();
         if count < 2 {
             return (0..count).map(is_out).collect();
         }
@@ -380,21 +387,43 @@ impl Surface {
         let mut around: Vec<i32> = vec![0; count];
         let turned_with = |piece: usize| {
             let mut touched = Vec::new();
-            columns.crossings(firsts[piece].y, firsts[piece].z, |crossing| {
+            let from = pieces[piece].first;
+            columns.crossings(from.y, from.z, |crossing| {
                 let other = piece_of[crossing.triangle as usize] as usize;
-                if other != piece && middles[other].1 == 0 && crossing.is_after(firsts[piece].x) {
+                if other != piece && !pieces[other].is_open && crossing.is_after(from.x) {
                     around[other] += crossing.sign;
                     touched.push(other);
                 }
             });
-            let outermost = touched
-                .iter()
-                .copied()
-                .filter(|&other| around[other] != 0)
-                .reduce(|best, other| if volumes[other].abs() > volumes[best].abs() { other } else { best });
+            let outermost = touched.iter().copied().filter(|&other| around[other] != 0).reduce(|best, other| {
+                if pieces[other].volume.abs() > pieces[best].volume.abs() { other } else { best }
+            });
             touched.iter().for_each(|&other| around[other] = 0);
             outermost.unwrap_or(piece)
         };
         (0..count).map(turned_with).map(is_out).collect()
+    }
+}
+
+/// What a piece of a surface encloses. An open one is closed by a fan of triangles over the middle of its open edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Enclosed {
+    /// Negative if its triangles look inwards.
+    volume: f64,
+    area: f64,
+    is_open: bool,
+    /// A point of it.
+    first: DVec3,
+}
+
+impl Enclosed {
+    /// Whether it is flat but for round-off.
+    fn is_sheet(&self) -> bool {
+        self.volume.abs() <= 1e-9 * self.area * self.area.sqrt()
+    }
+
+    /// Whether it has an inside.
+    pub(crate) fn is_solid(&self) -> bool {
+        self.volume > 0.0 && !self.is_sheet()
     }
 }

@@ -359,6 +359,17 @@ fn refusals_of_medit_files_say_where_and_what_to_do() {
         volume(odd, Format::Medit).notes,
         ["has `TetrahedraP7` in line 30, which is not read", "has no `End`, so that its end may be missing"]
     );
+    let several = text.replace("Corners", "TetrahedraP7").replace("RequiredVertices", "SolAtVertices");
+    assert_eq!(
+        volume(several, Format::Medit).notes,
+        ["has keywords that are not read: `TetrahedraP7` in line 30, `SolAtVertices` in line 33"]
+    );
+    let nothing =
+        "MeshVersionFormatted 2\nDimension 3\nVertices\n1\n0 0 0 0\nTrianglesP7\n1\n1 1\nHexahedraQ9\n1\n1 1\nEnd\n";
+    let found = refusal(nothing, Format::Medit);
+    let expected =
+        "has keywords that are not read: `TrianglesP7` in line 6, `HexahedraQ9` in line 9 (write triangles, ";
+    assert!(found.starts_with(expected), "{found}");
 }
 
 #[test]
@@ -443,6 +454,32 @@ fn an_assembly_of_abaqus_has_the_mesh_of_its_part_or_of_its_instance() {
         assert_eq!(group(&found, "Tip"), [[0.0, 0.0, 1.0]]);
         assert_eq!(group(&found, "held"), [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         assert!(group(&found, "far").contains(&[1.0, 1.0, 1.0]));
+        assert_eq!(found.notes, ["has a set of its assembly without `INSTANCE`, which is not read"]);
+    }
+    let two = dependent.replace("*END ASSEMBLY", "*ELSET, ELSET=other\n1\n*END ASSEMBLY");
+    let expected = ["has 2 sets of its assembly without `INSTANCE`, which are not read"];
+    assert_eq!(volume(two, Format::Abaqus).notes, expected);
+}
+
+/// Members are counted as they are listed, not only those that are left when each is there once.
+#[test]
+fn sets_of_abaqus_named_again_and_again_are_refused() {
+    let nodes: String = (1..=100).map(|node| format!("{node}, {node}, 0, 0\n")).collect();
+    let elements: String = (1..100).map(|node| format!("{node}, {node}, {}\n", node + 1)).collect();
+    let mesh = format!("*NODE, NSET=all\n{nodes}*ELEMENT, TYPE=T3D2, ELSET=rods\n{elements}");
+    let limits = Limits { points: 1000, corners: 1000 };
+    for (again, times, is_read) in [
+        (format!("*NSET, NSET=more\n{}\n", "all, ".repeat(30)), 1, true),
+        (format!("*NSET, NSET=more\n{}\n", "all, ".repeat(41)), 1, false),
+        ("*NSET, NSET=more\nall\n".to_owned(), 41, false),
+        ("*NSET, NSET=more, ELSET=rods\n".to_owned(), 21, false),
+    ] {
+        match read_cells(format!("{mesh}{}", again.repeat(times)).as_bytes(), Format::Abaqus, &limits) {
+            Ok(_) => assert!(is_read, "{again}"),
+            Err(error) => {
+                assert_eq!((error.message.as_str(), is_read), ("has groups with more than 4000 nodes", false))
+            }
+        }
     }
 }
 

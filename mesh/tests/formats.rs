@@ -617,6 +617,8 @@ fn data_of_gltf_may_be_beside_it_and_nowhere_else() {
         ("a.bin", "a.bin"),
         ("my%20box%c3%bc.bin", "my boxü.bin"),
         ("parts/my box.bin", "parts/my box.bin"),
+        ("parts\\\\a.bin", "parts/a.bin"),
+        ("parts%5Ca.bin", "parts/a.bin"),
         ("100%.bin", "100%.bin"),
         ("%+f%zz.bin", "%+f%zz.bin"),
         ("a%2fb.bin", "a/b.bin"),
@@ -680,6 +682,7 @@ fn formats_that_are_not_read_have_converters() {
         ("fbx", "Blender"),
         ("usdz", "Blender"),
         ("bdf", "meshio"),
+        ("unv", "gmsh FILE -save"),
         ("vti", "ParaView"),
         ("sldprt", "program that made it"),
     ] {

@@ -613,7 +613,15 @@ fn only_the_first_buffer_of_gltf_is_the_data_of_the_file() {
     assert!(refusal(&file.concat(), format).starts_with("has no data for its buffer 1 "));
 }
 
-/// Displacements are the point data `U` with three components, and are not added to the points.
+/// The file with an array of other displacements.
+fn displaced(name: &str, components: usize, numbers: &str) -> String {
+    let text = include_str!("files/displaced.vtu");
+    let old = "Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 0.5 0 0 0 0.25 0 0 0 -1<";
+    assert!(text.contains(old));
+    text.replace(old, &format!("Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">{numbers}<"))
+}
+
+/// Displacements are the point data `U` with two or three components, and are not added to the points.
 #[test]
 fn displacements_are_read_beside_points() {
     let bytes = include_bytes!("files/displaced.vtu");
@@ -621,13 +629,67 @@ fn displacements_are_read_beside_points() {
     let cells = read_cells(bytes, Format::Vtu, &limits).unwrap();
     let moved = [DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.25, -DVec3::Z];
     assert_eq!((cells.points[1], cells.displacements.as_deref()), (DVec3::X, Some(&moved[..])));
-    // A scalar of that name, and vectors in the plane, are none.
-    for (components, numbers) in [(1, "0 0.5 0.25 1"), (2, "0 0 0.5 0 0 0.25 0 0")] {
-        let text = std::str::from_utf8(bytes).unwrap();
-        let array = format!("Name=\"U\" NumberOfComponents=\"{components}\" format=\"ascii\">{numbers}<");
-        let old = "Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 0.5 0 0 0 0.25 0 0 0 -1<";
-        assert!(text.contains(old));
-        let cells = read_cells(text.replace(old, &array).as_bytes(), Format::Vtu, &limits).unwrap();
-        assert_eq!(cells.displacements, None);
+    let of = |name: &str, components, numbers: &str| {
+        read_cells(displaced(name, components, numbers).as_bytes(), Format::Vtu, &limits).unwrap()
+    };
+    // A scalar of that name is none. Vectors in the plane have z = 0.
+    assert_eq!(of("U", 1, "0 0.5 0.25 1").displacements, None);
+    let plane = [DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.25, DVec3::new(1.0, 2.0, 0.0)];
+    for name in ["U", "displacement", "Displacement"] {
+        assert_eq!(of(name, 2, "0 0 0.5 0 0 0.25 1 2").displacements.as_deref(), Some(&plane[..]), "{name}");
+    }
+    assert_eq!(of("velocity", 2, "0 0 0.5 0 0 0.25 1 2").velocities.as_deref(), Some(&plane[..]));
+}
+
+#[test]
+fn vectors_of_other_numbers_than_their_points_are_told() {
+    for name in ["U", "velocity"] {
+        let found = refusal(displaced(name, 3, "0 0 0 1 0 0 0 2 0").as_bytes(), Format::Vtu);
+        let expected = format!("has 3 vectors in its array `{name}` in line 6; expected 4, one for each point");
+        assert!(found.starts_with(&expected), "{found}");
+    }
+    // Pieces may have none.
+    let text = displaced("U", 3, "0 0 0 1 0 0 0 2 0 0 0 3");
+    let (start, end) = (text.find("<Piece").unwrap(), text.find("</Piece>").unwrap() + 8);
+    let (data, after) = (text.find("<PointData>").unwrap(), text.find("<Points>").unwrap());
+    let two = [&text[..end], &text[start..data], &text[after..]].concat();
+    let cells = read_cells(two.as_bytes(), Format::Vtu, &LIMITS).unwrap();
+    assert_eq!((cells.points.len(), cells.displacements), (8, None));
+}
+
+#[test]
+fn displacements_stay_with_their_points_if_others_are_left_out() {
+    let text = displaced("U", 3, "9 9 9 0 0 0 0.5 0 0 0 0.25 0 0 0 -1")
+        .replace(">0 0 0 1 0 0 0 1 0 0 0 1<", ">nan nan nan 0 0 0 1 0 0 0 1 0 0 0 1<")
+        .replace(">0 1 2 3<", ">1 2 3 4<");
+    let cells = read_cells(text.as_bytes(), Format::Vtu, &LIMITS).unwrap();
+    let moved = [DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.25, -DVec3::Z];
+    assert_eq!((cells.lost, cells.points[1]), (1, DVec3::X));
+    assert_eq!(cells.displacements.as_deref(), Some(&moved[..]));
+}
+
+/// A list without data of its own is of zeros, however long it says that it is.
+#[test]
+fn lists_of_gltf_are_not_longer_than_its_data() {
+    let json = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:a;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[
+        {"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+        {"componentType":5125,"count":9,"type":"SCALAR","sparse":{"count":1,
+        "indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0,"byteOffset":4}}}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]}"#;
+    let found = refusal(json.replacen("\"count\":9", "\"count\":7999998", 1).as_bytes(), Format::Gltf);
+    let expected =
+        "has 7999998 entries in its list 1, which has no data of its own; expected at most 36, the bytes of its";
+    assert!(found.starts_with(expected), "{found}");
+    assert!(read_cells(json.as_bytes(), Format::Gltf, &LIMITS).is_ok());
+}
+
+#[test]
+fn a_header_of_ply_may_end_the_file() {
+    let header =
+        "ply\rformat ascii 1.0\relement vertex 1\rproperty float x\rproperty float y\rproperty float z\rend_header";
+    for text in [header.to_owned(), header.replace('\r', "\n"), header.replace('\r', "\r\n")] {
+        let found = refusal(text.as_bytes(), Format::Ply);
+        assert!(found.starts_with("ends in "), "{found}");
     }
 }

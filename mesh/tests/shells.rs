@@ -154,6 +154,37 @@ fn shells_in_each_other_are_filled_once_and_cavities_are_not() {
     assert!((both.cage.overlap / lens - 1.0).abs() < 0.03, "{} {lens}", both.cage.overlap);
 }
 
+/// A hole in one piece does not join it to another, and what encloses nothing by itself goes with the nearest.
+#[test]
+fn open_pieces_are_filled_by_themselves() {
+    let side = 0.25;
+    let boxes = [0.0, 1.0 + side / 2.0, 5.0].map(|x| block(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 1.0, 1.0, 1.0)));
+    let mut holed = boxes.clone();
+    holed[1].triangles.pop();
+    // A triangle, and two that are a roof.
+    let triangle = Surface {
+        points: vec![DVec3::new(6.2, 0.1, 0.1), DVec3::new(6.3, 0.9, 0.1), DVec3::new(6.25, 0.1, 0.9)],
+        triangles: vec![[0, 1, 2]],
+        ..Surface::default()
+    };
+    let mut roof = triangle.clone();
+    roof.points.push(DVec3::new(6.6, 0.9, 0.9));
+    roof.triangles.push([2, 1, 3]);
+    let [all, with_hole] = [together(&boxes), together(&holed)];
+    for with in [Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
+        let filled = |surface: &Surface| fill(surface, with, MOST).unwrap();
+        let closed = filled(&all);
+        assert_eq!(volumes(&closed).len(), 3, "{with:?}");
+        assert_eq!(volumes(&filled(&with_hole)).len(), 3, "{with:?}");
+        let beside = filled(&together(&[all.clone(), triangle.clone()]));
+        // The triangle changes the lattice of the third box only.
+        let others = |filled: &Filled| filled.cage.nodes.iter().copied().filter(|at| at.x < 4.0).collect::<Vec<_>>();
+        assert_eq!(others(&beside), others(&closed), "{with:?}");
+        assert_ne!(beside.cage.nodes, closed.cage.nodes, "{with:?}");
+        assert_eq!(volumes(&filled(&together(&[all.clone(), roof.clone()]))).len(), 4, "{with:?}");
+    }
+}
+
 /// A hundred random triangles are no solid, but soon answered.
 #[test]
 fn a_random_soup_is_filled_or_refused() {

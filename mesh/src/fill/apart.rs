@@ -4,7 +4,7 @@ use super::embed::pieces;
 use super::lattice::too_many;
 use super::{Cage, FillError, Filled, cubes};
 use crate::Surface;
-use crate::edges::{EdgeUse, Sets, net};
+use crate::edges::Sets;
 use glam::DVec3;
 use localshape_sim::geometry::node_volumes;
 use localshape_sim::{Body, Dimension, Solids};
@@ -85,8 +85,8 @@ fn volumes(part: &Filled) -> Vec<f64> {
     volumes
 }
 
-/// The part of the surface to which each point belongs, and how many there are: pieces whose boxes meet are one part, and so are
-/// all that enclose nothing by themselves.
+/// The part of the surface to which each point belongs, and how many there are: pieces whose boxes meet are one part. What
+/// encloses nothing, as a sheet does, goes with the nearest part.
 fn parts(surface: &Surface) -> (Vec<u32>, usize) {
     let (piece_of, count) = pieces(surface);
     let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
@@ -105,22 +105,20 @@ fn parts(surface: &Surface) -> (Vec<u32>, usize) {
             }
         }
     }
-    // What is open, or has no volume, has no inside without the others.
-    let mut volumes = vec![0.0; count];
-    for &of in &surface.triangles {
-        let piece = sets.of(piece_of[of[0] as usize]) as usize;
-        let [a, b, c] = surface.corners(of).map(|corner| corner - boxes[piece].0);
-        volumes[piece] += a.dot(b.cross(c));
+    let set_of: Vec<u32> = (0..count as u32).map(|piece| sets.of(piece)).collect();
+    for (&set, (low, high)) in set_of.iter().zip(boxes.clone()) {
+        let whole = &mut boxes[set as usize];
+        *whole = (whole.0.min(low), whole.1.max(high));
     }
-    for edge in EdgeUse::all(&surface.triangles).chunk_by(EdgeUse::same).filter(|edge| net(edge) != 0) {
-        volumes[sets.of(piece_of[edge[0].low as usize]) as usize] = f64::NEG_INFINITY;
-    }
-    let is_solid = |piece: u32, sets: &mut Sets| volumes[sets.of(piece) as usize] > 0.0;
-    let first = (0..count as u32).find(|&piece| is_solid(piece, &mut sets)).unwrap_or(0);
-    for piece in 0..count as u32 {
-        if !is_solid(piece, &mut sets) {
-            sets.join(piece, first);
-        }
+    let of_triangles: Vec<u32> = surface.triangles.iter().map(|of| set_of[piece_of[of[0] as usize] as usize]).collect();
+    let enclosed = surface.enclosed(&of_triangles, count);
+    let (solid, empty): (Vec<usize>, Vec<usize>) =
+        (0..count).filter(|&set| set_of[set] as usize == set).partition(|&set| enclosed[set].is_solid());
+    for set in empty {
+        let (low, high) = boxes[set];
+        let gap = |other: usize| (boxes[other].0 - high).max(low - boxes[other].1).max(DVec3::ZERO).length_squared();
+        let nearest = solid.iter().copied().min_by(|&one, &other| gap(one).total_cmp(&gap(other)));
+        sets.join(set as u32, nearest.unwrap_or(0) as u32);
     }
     let (part_of, count) = sets.numbered();
     (piece_of.into_iter().map(|piece| part_of[piece as usize]).collect(), count)

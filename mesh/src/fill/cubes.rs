@@ -37,7 +37,7 @@ pub(super) fn fill(
     let refuse = |needed: usize| {
         let mut measures = surface.measures();
         if is_graded {
-            // The number of graded cubes grows with the surface.
+            // Cubes at the surface are not joined, and most are there unless the body is many sides thick.
             measures.volume = 0.0;
         }
         Err(too_many(&measures, side, needed as f64, most, ""))

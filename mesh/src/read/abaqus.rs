@@ -18,10 +18,12 @@ struct Reader<'b, 'l> {
     sets: [BTreeMap<String, (String, Vec<u32>)>; 2],
     /// The number of elements of each type that is not read.
     skipped: BTreeMap<String, usize>,
-    /// The members of all sets so far.
+    /// The members of all sets so far that the file does not list one by one.
     spent: usize,
     /// The numbers of parts and of instances.
     parts: [usize; 2],
+    /// The number of sets of an assembly that name no instance.
+    left_out: usize,
     /// Whether keywords are about an assembly, whose nodes are points of reference with numbers of their own.
     is_assembly: bool,
 }
@@ -31,8 +33,8 @@ const ELEMENTS: usize = 1;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let (source, builder) = (Source::text(bytes), Builder::new(limits));
-    let (tags, sets, skipped, spent, parts, is_assembly) = Default::default();
-    let mut reader = Reader { source, builder, limits, tags, sets, skipped, spent, parts, is_assembly };
+    let (tags, sets, skipped, spent, parts, left_out, is_assembly) = Default::default();
+    let mut reader = Reader { source, builder, limits, tags, sets, skipped, spent, parts, left_out, is_assembly };
     let mut is_begun = false;
     while let Some(line) = line(&mut reader.source) {
         if line.rest().starts_with(b"*") {
@@ -131,7 +133,10 @@ impl Reader<'_, '_> {
         }
         match &*keyword.name {
             "NODE" | "ELEMENT" if self.is_assembly => Ok(()),
-            "NSET" | "ELSET" if self.is_assembly && !has("INSTANCE") => Ok(()),
+            "NSET" | "ELSET" if self.is_assembly && !has("INSTANCE") => {
+                self.left_out += 1;
+                Ok(())
+            }
             "NODE" => self.nodes(keyword),
             "ELEMENT" => self.elements(keyword),
             "NSET" => self.set(NODES, keyword),
@@ -249,7 +254,10 @@ impl Reader<'_, '_> {
         let mut members = Vec::new();
         if let (NODES, Some(elements)) = (kind, keyword.get("ELSET")) {
             let elements = set(ELEMENTS, elements, &keyword.line)?;
-            members.extend(elements.iter().flat_map(|&element| &self.builder.cells.corners[element as usize]));
+            let corners = &self.builder.cells.corners;
+            let count = elements.iter().map(|&element| corners[element as usize].len()).sum();
+            cells::spend(&mut self.spent, count, self.limits)?;
+            members.extend(elements.iter().flat_map(|&element| &corners[element as usize]));
         }
         while let Some(line) = data(&mut self.source) {
             if keyword.parameters.contains_key("GENERATE") {
@@ -261,7 +269,11 @@ impl Reader<'_, '_> {
             for (_, field) in line.fields() {
                 let word = String::from_utf8_lossy(field.rest().trim_ascii());
                 match word.parse().map(|number| self.tags[kind].get(number)) {
-                    Err(_) => members.extend(set(kind, word.trim_matches('"'), &field)?),
+                    Err(_) => {
+                        let others = set(kind, word.trim_matches('"'), &field)?;
+                        cells::spend(&mut self.spent, others.len(), self.limits)?;
+                        members.extend(others);
+                    }
                     // Its type may be one that is not read.
                     Ok(None) if kind == ELEMENTS && !self.skipped.is_empty() => {}
                     Ok(None) => return Err(missing(["node", "element"][kind], &word, &field)),
@@ -271,7 +283,6 @@ impl Reader<'_, '_> {
         }
         members.sort_unstable();
         members.dedup();
-        cells::spend(&mut self.spent, members.len(), self.limits)?;
         self.add(kind, Some(name), members);
         Ok(())
     }
@@ -284,6 +295,18 @@ impl Reader<'_, '_> {
                 return Err(ReadError::new(note, "mesh the object with solid, plane or shell elements"));
             }
             self.builder.cells.notes.push(note);
+        }
+        match self.left_out {
+            0 => {}
+            1 => self
+                .builder
+                .cells
+                .notes
+                .push("has a set of its assembly without `INSTANCE`, which is not read".to_owned()),
+            count => {
+                let note = format!("has {count} sets of its assembly without `INSTANCE`, which are not read");
+                self.builder.cells.notes.push(note);
+            }
         }
         let [nodes, elements] = self.sets;
         for (key, (name, members)) in elements {

@@ -272,6 +272,7 @@ impl<'l> Builder<'l> {
         cells.lost = self.lost.len();
         cells.points = kept.of(&cells.points);
         cells.velocities = cells.velocities.take().map(|all| kept.of(&all));
+        cells.displacements = cells.displacements.take().map(|all| kept.of(&all));
         cells.rename(&kept.new);
         let renamed = |list: &[u32]| -> Vec<u32> { list.iter().map(|&point| kept.new[point as usize]).collect() };
         let copies = std::mem::take(&mut cells.copies);

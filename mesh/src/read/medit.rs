@@ -4,16 +4,19 @@
 
 use super::cells::Builder;
 use super::gmsh::Kind;
-use super::source::{Scalar, Source};
+use super::source::{Scalar, Source, quoted};
 use super::{Cells, Format, Limits, ReadError, content};
 use glam::DVec3;
+
+/// So many keywords that are not read are told.
+const MOST: usize = 8;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     if bytes.starts_with(&[1, 0, 0, 0]) || bytes.starts_with(&[0, 0, 0, 1]) {
         let message = "is a binary file of Medit (.meshb); expected Medit's text (.mesh)";
         return Err(ReadError::new(message, "convert it: `meshio convert FILE.meshb NEW.mesh`"));
     }
-    let mut reader = Reader { source: Source::text(bytes), builder: Builder::new(limits) };
+    let mut reader = Reader { source: Source::text(bytes), builder: Builder::new(limits), unread: Vec::new() };
     if reader.word() != b"MeshVersionFormatted" {
         return Err(content::no_beginning(bytes, Format::Medit, "`MeshVersionFormatted`"));
     }
@@ -38,12 +41,15 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
             },
         }
     }
+    reader.tell()?;
     reader.builder.finish(&reader.source, 1)
 }
 
 struct Reader<'b, 'l> {
     source: Source<'b>,
     builder: Builder<'l>,
+    /// The keywords about cells that are not read, and where the data of each begin.
+    unread: Vec<(&'b [u8], usize)>,
 }
 
 impl<'b> Reader<'b, '_> {
@@ -98,8 +104,28 @@ impl<'b> Reader<'b, '_> {
         }
     }
 
-    /// Goes to the next keyword, and tells of cells that it leaves out.
-    fn skip(&mut self, keyword: &[u8]) -> Result<(), ReadError> {
+    /// Tells of keywords that are not read, which is an error if there is nothing else.
+    fn tell(&mut self) -> Result<(), ReadError> {
+        let named = |&(keyword, at): &(&[u8], usize)| format!("{} {}", quoted(keyword), self.source.place(at));
+        let all: Vec<_> = self.unread.iter().map(named).collect();
+        let note = match &all[..] {
+            [] => return Ok(()),
+            [one] => format!("has {one}, which is not read"),
+            several => format!("has keywords that are not read: {}", several.join(", ")),
+        };
+        if self.builder.is_empty() {
+            return Err(ReadError::new(
+                note,
+                "write triangles, quadrilaterals, tetrahedra, hexahedra, prisms or pyramids",
+            ));
+        }
+        // Before what is said of the end.
+        self.builder.cells.notes.insert(0, note);
+        Ok(())
+    }
+
+    /// Goes to the next keyword, and notes cells that it leaves out.
+    fn skip(&mut self, keyword: &'b [u8]) -> Result<(), ReadError> {
         /// How keywords begin that are about other things than cells.
         const OTHERS: [&str; 9] =
             ["Required", "Corners", "Ridges", "Normal", "Tangent", "SubDomain", "Geometry", "Identifier", "AngleOf"];
@@ -107,10 +133,9 @@ impl<'b> Reader<'b, '_> {
         if !keyword[0].is_ascii_alphabetic() {
             return Err(self.source.wrong(keyword, "a keyword, such as `Tetrahedra`"));
         }
-        // The first tells of all others.
-        if self.builder.cells.notes.is_empty() && !OTHERS.iter().any(|other| name.starts_with(other)) {
-            let place = self.source.place(self.source.at);
-            self.builder.cells.notes.push(format!("has `{name}` {place}, which is not read"));
+        let is_known = OTHERS.iter().any(|other| name.starts_with(other));
+        if !is_known && self.unread.len() < MOST && self.unread.iter().all(|&(other, _)| other != keyword) {
+            self.unread.push((keyword, self.source.at));
         }
         loop {
             match self.source.peek().first() {

@@ -1,7 +1,7 @@
 //! Formats of meshes that are not read, and what converts them.
 
 /// Endings of files, and what to do.
-const CONVERTERS: [(&str, &str); 7] = [
+const CONVERTERS: [(&str, &str); 8] = [
     (
         "step stp iges igs brep",
         "mesh it with Gmsh: `gmsh -3 FILE -o NEW.msh` for cells, `gmsh -2 FILE -o NEW.stl` for its surface",
@@ -14,9 +14,10 @@ const CONVERTERS: [(&str, &str); 7] = [
         "export it as `.stl` or `.obj` from the program that made it",
     ),
     (
-        "node ele bdf nas fem cgns e exo med mdpa meshb su2 ugrid unv vol xdmf xmf",
+        "node ele bdf nas fem cgns e exo med mdpa meshb su2 ugrid vol xdmf xmf",
         "convert it with meshio: `meshio convert FILE NEW.vtu`",
     ),
+    ("unv", "convert it with Gmsh: `gmsh FILE -save -o NEW.msh`"),
     ("vti vtm vtr vts", "open it in ParaView, and save it as `.vtu`"),
 ];
 

@@ -88,7 +88,7 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
                 let coding = coding.ok_or_else(|| wrong(text, "`format` before it"))?;
                 // Where lines end with a carriage return alone, a line feed behind it is the first byte of the data.
                 if !has_feeds {
-                    source.at = start + text.len() + 1;
+                    source.at = (start + text.len() + 1).min(bytes.len());
                 }
                 return Ok((coding, elements));
             }

@@ -26,7 +26,7 @@ pub fn read_list(bytes: &[u8]) -> Result<Vec<Listed>, ReadError> {
         let time = required(tag, "timestep", place)?;
         let number = time.trim().parse().ok().filter(|time: &f64| time.is_finite());
         let time = number.ok_or_else(|| {
-            let message = format!("has the time {} {place}; expected a number (s)", quoted(time.as_bytes()));
+            let message = format!("has the time {} {}; expected a number (s)", quoted(time.as_bytes()), place());
             ReadError::new(message, DAMAGED)
         })?;
         Ok(Listed { time, file, part: attribute(tag, "part")? })
@@ -50,12 +50,12 @@ pub fn read_pieces(bytes: &[u8]) -> Result<Vec<String>, ReadError> {
     Ok(files)
 }
 
-/// The elements of a name in a VTK file of one of these types. `read` gets the place of each in words.
+/// The elements of a name in a VTK file of one of these types. `read` gets the place of each in words, which takes long to find.
 fn entries<T>(
     bytes: &[u8],
     kinds: &[&str],
     name: &str,
-    read: impl Fn(&BytesStart<'_>, &str) -> Result<T, ReadError>,
+    read: impl Fn(&BytesStart<'_>, &dyn Fn() -> String) -> Result<T, ReadError>,
 ) -> Result<Vec<T>, ReadError> {
     let place = |at: u64| Source::text(bytes).place(at as usize);
     let mut reader = Reader::from_reader(bytes);
@@ -75,7 +75,8 @@ fn entries<T>(
                 }
             }
             Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref().as_bytes() == name.as_bytes() => {
-                found.push(read(&tag, &place(reader.buffer_position()))?);
+                let end = reader.buffer_position();
+                found.push(read(&tag, &|| place(end))?);
             }
             Event::Eof if !is_begun => {
                 return Err(ReadError::new("is no list of VTK's files: it has no `<VTKFile>`", DAMAGED));
@@ -87,10 +88,10 @@ fn entries<T>(
 }
 
 /// An attribute that an element at a place has to have.
-fn required(tag: &BytesStart<'_>, name: &str, place: &str) -> Result<String, ReadError> {
+fn required(tag: &BytesStart<'_>, name: &str, place: &dyn Fn() -> String) -> Result<String, ReadError> {
     let element = tag.local_name();
     let element = String::from_utf8_lossy(element.as_ref().as_bytes());
-    let missing = || ReadError::new(format!("has a `<{element}>` without `{name}` {place}"), DAMAGED);
+    let missing = || ReadError::new(format!("has a `<{element}>` without `{name}` {}", place()), DAMAGED);
     attribute(tag, name)?.ok_or_else(missing)
 }
 

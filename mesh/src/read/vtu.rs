@@ -19,6 +19,8 @@ use std::io::Read;
 
 /// An array of numbers where it stands in the file.
 struct Array {
+    /// Its name as typed.
+    name: Vec<u8>,
     scalar: Scalar,
     /// The number of components of a point or a vector.
     columns: usize,
@@ -144,11 +146,13 @@ fn pieces(
                     b"DataArray" => {
                         let parent = path.last().cloned().unwrap_or_default();
                         let wanted: [&[u8]; 6] = [b"Points", b"Cells", b"Verts", b"Lines", b"Polys", b"Strips"];
-                        let mut name = attribute(&tag, "Name")?.unwrap_or_default().into_bytes();
+                        let typed = attribute(&tag, "Name")?.unwrap_or_default().into_bytes();
+                        let mut name = typed.clone();
                         // CalculiX and others write `U`.
                         let is_displacement = parent == POINT_DATA
                             && [DISPLACEMENT, b"u"].iter().any(|other| name.eq_ignore_ascii_case(other))
-                            && attribute(&tag, "NumberOfComponents")?.is_some_and(|number| number.trim() == "3");
+                            && attribute(&tag, "NumberOfComponents")?
+                                .is_some_and(|number| matches!(number.trim(), "2" | "3"));
                         if is_displacement {
                             name = DISPLACEMENT.to_vec();
                         }
@@ -157,7 +161,7 @@ fn pieces(
                             parent == b"Points" || is_displacement || parent == POINT_DATA && name == VELOCITY;
                         if wanted.contains(&&*parent) || is_vector || is_ghost {
                             let scalar = scalar(&attribute(&tag, "type")?.unwrap_or_default())?;
-                            let columns = if is_vector { columns(&tag, &name, || place(before))? } else { 1 };
+                            let columns = if is_vector { columns(&tag, &typed, || place(before))? } else { 1 };
                             let start = reader.buffer_position() as usize;
                             let place = match attribute(&tag, "format")?.as_deref() {
                                 Some("appended") => {
@@ -179,7 +183,10 @@ fn pieces(
                                     return Err(ReadError::new(message, DAMAGED));
                                 }
                             };
-                            open = Some(((parent, name), Array { scalar, columns, at: before as usize, place }));
+                            open = Some((
+                                (parent, name),
+                                Array { name: typed, scalar, columns, at: before as usize, place },
+                            ));
                             if is_empty {
                                 close(&mut open, &mut piece, start as u64);
                             }
@@ -281,13 +288,21 @@ impl Layout<'_> {
                 builder.point_at(vector(array, || source.coordinate(array.scalar))?, at).map(drop)
             })?;
         }
+        let count = builder.points() - first as usize;
         let vectors = |name: &[u8], expected: &str| -> Result<Option<Vec<DVec3>>, ReadError> {
             let Some(array) = piece.get(&(POINT_DATA.to_vec(), name.to_vec())) else { return Ok(None) };
             let mut vectors = Vec::new();
-            self.each(array, name, 3 * limits.points, |source| {
+            self.each(array, &array.name, 3 * limits.points, |source| {
                 vectors.push(vector(array, || source.float(array.scalar, expected))?);
                 Ok(())
             })?;
+            if vectors.len() != count {
+                let (name, found, place) =
+                    (quoted(&array.name), vectors.len(), Source::text(self.bytes).place(array.at));
+                let message =
+                    format!("has {found} vectors in its array {name} {place}; expected {count}, one for each point");
+                return Err(ReadError::new(message, DAMAGED));
+            }
             Ok(Some(vectors))
         };
         vectors(VELOCITY, "a velocity")?.into_iter().for_each(|all| builder.velocities(all));

@@ -68,7 +68,17 @@ impl<'b> Lists<'b> {
         };
         let mut all = match accessor.view() {
             Some(view) => self.rows(&view, accessor.offset(), count, columns, kind)?,
-            None => vec![0.0; count * columns],
+            None => {
+                // Zeros stand beside a list with data, which is as long.
+                let bytes: usize = self.buffers.iter().map(|buffer| buffer.len()).sum();
+                if count > bytes {
+                    let message = format!(
+                        "has {count} entries in its list {index}, which has no data of its own; expected at most {bytes}, the bytes of its buffers"
+                    );
+                    return Err(ReadError::damaged(message));
+                }
+                vec![0.0; count * columns]
+            }
         };
         if let Some(sparse) = accessor.sparse() {
             let (indices, values) = (sparse.indices(), sparse.values());
@@ -167,7 +177,7 @@ fn name_beside(uri: &str) -> Result<String, ReadError> {
     let elsewhere = match () {
         () if name.contains(':') => "by an address",
         () if leaves => "outside of its folder",
-        () => return Ok(name),
+        () => return Ok(name.replace('\\', "/")),
     };
     let message = format!("has its data {elsewhere}, {}; expected a file beside it", quoted(uri.as_bytes()));
     Err(ReadError::new(message, ONE_FILE))
