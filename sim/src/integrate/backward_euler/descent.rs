@@ -41,7 +41,8 @@ impl BackwardEuler {
             idle = if falls && !is_damped || size < 0.25 * least { 0 } else { idle + 1 };
             least = if idle == 0 { size } else { least };
         }
-        if !(dot(step, &self.residual, &self.residual) <= before) && !self.is_solved(step, state, next) {
+        let after = dot(step, &self.residual, &self.residual);
+        if (after > before || after.is_nan()) && !self.is_solved(step, state, next) {
             next.velocity.copy_from_slice(&found);
             self.residual(step, state, next);
         }

@@ -66,13 +66,14 @@ impl Method for BackwardEuler {
         step.for_each_held(next, |node| self.is_held[node] = true);
         let start = self.start(step, state, next);
         self.search(step, state, next, start);
-        if !self.is_solved(step, state, next) {
+        let mut is_solved = self.is_solved(step, state, next);
+        if !is_solved {
             self.descend(step, state, next);
+            is_solved = self.is_solved(step, state, next);
         }
         next.memory.model.copy_from_slice(&self.evaluations[0].memory);
         step.check(next)?;
         let known = Unsolved::remembered(&state.memory.integrator);
-        let is_solved = self.is_solved(step, state, next);
         let unsolved = if is_solved { known } else { Some(Unsolved::after(known, step.interval.end, self.largest())) };
         next.memory.integrator.clear();
         next.memory.integrator.extend(unsolved.iter().flat_map(Unsolved::numbers));
@@ -103,7 +104,7 @@ impl BackwardEuler {
     /// The largest residual of a node (m/s).
     fn largest(&self) -> f64 {
         // NaN is larger than any number.
-        let larger = |most: f64, size: f64| if size <= most { most } else { size };
+        let larger = |most: f64, size: f64| if size <= most || most.is_nan() { most } else { size };
         self.residual.iter().map(|residual| residual.length_squared()).fold(0.0, larger).sqrt()
     }
 
@@ -246,4 +247,19 @@ impl BackwardEuler {
 /// The sum of `m a·b` over all nodes, in their order.
 fn dot(step: &Step<'_>, one: &[DVec3], other: &[DVec3]) -> f64 {
     step.masses().iter().zip(one).zip(other).map(|((mass, one), &other)| mass * one.dot(other)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_residual_that_is_no_number_is_the_largest() {
+        let mut method = BackwardEuler::new(Scales { length: 1.0, time: 1.0 });
+        for place in 0..3 {
+            method.residual = vec![DVec3::X; 3];
+            method.residual[place].y = f64::NAN;
+            assert!(method.largest().is_nan(), "{place}");
+        }
+    }
 }
