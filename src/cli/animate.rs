@@ -217,8 +217,8 @@ impl Folder {
         {
             let [before, after] = [&pair[0], &pair[1]].map(|(_, file)| name_of(file));
             bail!(
-                "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; render the \
-                 missing frames, or choose frames with --frames"
+                "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; make the missing \
+                 frames, or choose frames with --frames"
             );
         }
         let mut moments: Vec<(u64, f64)> = Vec::new();
@@ -243,7 +243,7 @@ impl Folder {
                 format!("shows frame {frame}; was it renamed?")
             } else if size != *own {
                 let [[w, h], [w2, h2]] = [size, *own];
-                format!("has {w}×{h} pixels, {before} has {w2}×{h2}; render them in one size")
+                format!("has {w}×{h} pixels, {before} has {w2}×{h2}; make them in one size")
             } else if scenes != *all_scenes {
                 format!("shows a different scene than {before}; expected frames of one scene")
             } else if runs != *all_runs {

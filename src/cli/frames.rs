@@ -29,13 +29,13 @@ impl FromStr for Moments {
 }
 
 impl Moments {
-    /// The nearest frame to each moment, of a scene that ends with frame `last`, at a rate (1/s).
-    pub(super) fn nearest(&self, last: u64, rate: f64) -> Result<Vec<(f64, u64)>, String> {
+    /// The nearest frame to each moment, of a scene of a duration (s) that ends with frame `last`, at a rate (1/s).
+    pub(super) fn nearest(&self, last: u64, duration: f64, rate: f64) -> Result<Vec<(f64, u64)>, String> {
         let nearest = |&time: &f64| {
-            let frame = (time * rate).round();
-            // A moment up to half a frame after the last frame has that frame.
-            let is_there = frame <= last as f64;
-            is_there.then_some((time, frame as u64)).ok_or_else(|| {
+            let (frame, last_frame) = ((time * rate).round(), last as f64);
+            // A moment after the last frame has that frame up to half a frame later, and in the duration.
+            let is_there = frame <= last_frame || time <= duration;
+            is_there.then_some((time, frame.min(last_frame) as u64)).ok_or_else(|| {
                 format!("there is no frame at {} s; the last one is at {} s", short(time), short(last as f64 / rate))
             })
         };
@@ -193,12 +193,16 @@ mod tests {
 
     #[test]
     fn moments_have_the_nearest_frames() {
-        let nearest = |typed: &str| typed.parse::<Moments>().and_then(|moments| moments.nearest(180, 60.0));
+        let nearest = |typed: &str| typed.parse::<Moments>().and_then(|moments| moments.nearest(180, 3.0, 60.0));
         let frames = |typed: &str| nearest(typed).unwrap().into_iter().map(|(_, frame)| frame).collect::<Vec<_>>();
         assert_eq!(frames("2s"), [120]);
         assert_eq!(frames("2, 500ms,0.51 s,0"), [120, 30, 31, 0]);
         assert_eq!(frames("3.008"), [180]);
         assert_eq!(nearest("9s").unwrap_err(), "there is no frame at 9 s; the last one is at 3 s");
+        // The last frame at 29.97 a second is at 0.968 s.
+        let late = |time: f64| Moments(vec![time]).nearest(29, 1.0, 29.97).map(|found| found[0].1);
+        assert_eq!([late(0.99), late(1.0)], [Ok(29), Ok(29)]);
+        assert_eq!(late(1.1).unwrap_err(), "there is no frame at 1.1 s; the last one is at 0.968 s");
         for typed in ["", "s", "2m", "-1", "nan", "1s2", "1,,2"] {
             assert!(nearest(typed).unwrap_err().contains("expected one such as 2s, 500ms or 2"), "{typed}");
         }

@@ -302,7 +302,10 @@ impl<'a> Recording<'a> {
                 let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&path))?;
                 return Ok(Simulation { frames, ahead: false, notes: false, noted, is_stored: true });
             }
-            runner = runner.watching();
+            // What bodies meet is for messages alone.
+            if !options.printing.quiet {
+                runner = runner.watching();
+            }
             if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
             }

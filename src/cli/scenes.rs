@@ -160,7 +160,7 @@ impl RunOptions {
 
 /// The nearest frame of a scene to each moment (s).
 pub(super) fn nearest(at: &Moments, scene: &Scene) -> Result<Vec<(f64, u64)>, Failure> {
-    let found = at.nearest(scene.last_frame(), scene.frames_per_second);
+    let found = at.nearest(scene.last_frame(), scene.duration, scene.frames_per_second);
     found.map_err(|message| Failure::usage(format!("--at: in “{}” {message}", scene.title)))
 }
 

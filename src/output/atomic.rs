@@ -37,7 +37,7 @@ impl AtomicFile {
     #[cfg(feature = "render")]
     pub(crate) fn create_anew(path: &Path) -> Result<Self, OutputError> {
         let (folder, prefix) = (folder_of(path), prefix(path));
-        for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
+        for entry in fs::read_dir(folder).map_err(OutputError::writing(path))? {
             let entry = entry.map_err(OutputError::reading(folder))?;
             let is_left = |name: &str| cfg!(unix) && name.starts_with(&prefix) && name.ends_with(SUFFIX);
             if entry.file_name().to_str().is_some_and(is_left)

@@ -49,7 +49,7 @@ impl<'a> DiagnosticsWriter<'a> {
     ) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         // A finished file has lost its hidden name.
-        let is_finished = !hidden.metadata().is_ok_and(|found| found.len() >= before.length);
+        let is_finished = !hidden.exists();
         if is_finished {
             fs::copy(&path, &hidden).map_err(OutputError::reading(&path))?;
         }

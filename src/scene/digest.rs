@@ -3,6 +3,7 @@
 use super::file::{BodyFile, Coordinates, Positive};
 use super::schema::{SCHEMA, by_name, variants, without_nulls};
 use crate::look::print::SizeFile;
+use crate::sim::FrictionOf;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -48,6 +49,7 @@ pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDige
         value["view"]["size"] = json!(size);
     }
     without_nulls(&mut value);
+    with_friction(&mut value);
     without_defaults(&mut value, &SCHEMA);
     let schema_of_body = &SCHEMA["properties"]["body"]["anyOf"][0];
     let bodies = value["body"].as_array_mut().into_iter().flatten();
@@ -118,6 +120,20 @@ impl Write for Hash {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+/// Names what friction is of where it is of paths. Its default was of velocities at first, which stays without a name, so that scenes
+/// that mean the same keep their digests.
+fn with_friction(value: &mut Value) {
+    let obstacles = value.get_mut("obstacle").and_then(Value::as_array_mut).into_iter().flatten();
+    for obstacle in obstacles.filter_map(Value::as_object_mut) {
+        if obstacle.get("friction").and_then(Value::as_f64).is_some_and(|friction| friction > 0.0) {
+            let of = obstacle.remove("friction_of").unwrap_or_else(|| json!(FrictionOf::default()));
+            if of != json!(FrictionOf::Velocity) {
+                obstacle.insert("friction_of".to_owned(), of);
+            }
+        }
     }
 }
 

@@ -248,14 +248,14 @@ impl Moment {
         let Some(format) = Format::of(&ending) else {
             return Err(Flaw::new(
                 &name,
-                "is neither a grid (.vtu, .vtp, .pvtu, .vtk) nor a surface (.obj, .ply, .stl)",
+                "is neither a grid (.vtu, .vtp, .pvtu, .vtk, .msh, .inp, .mesh) nor a surface (.obj, .ply, .stl)",
             ));
         };
         let bytes = beside::bytes(path, &[&*ending], limits.file, "a moment", "expected a file").map_err(told)?;
         let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
         let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
         let cells = mesh::read_cells(&bytes, format, &limits).map_err(|error| told((error.message, error.help)))?;
-        if !matches!(format, Format::Gmsh | Format::Vtk | Format::Vtu) {
+        if !matches!(format, Format::Gmsh | Format::Vtk | Format::Vtu | Format::Medit | Format::Abaqus) {
             self.is_surface = true;
             self.is_welded |= format == Format::Stl;
             self.time = number_in(&bytes, TIME).unwrap_or(self.time);

@@ -593,7 +593,10 @@ fn warn_of_sizes(scene: &Scene, parts: &SceneParts, report: &mut Collector<'_>) 
         }
     }
     for run in 0..scene.runs.len() {
-        if let Some([message, help]) = scene.misfits(run) {
+        // Whoever gives a scale means it.
+        if !report.is_typed(&key_path!["run", run, "scale"])
+            && let Some([message, help]) = scene.misfits(run)
+        {
             report.warn(&key_path!["run", run, "states"], message, help);
         }
     }

@@ -148,15 +148,12 @@ impl ReadRecording {
     }
 }
 
+/// A body of a recording's own, the number of its elements that were turned over, and what is left out of its file.
+type Listed = (Lists, usize, Vec<String>);
+
 impl Own {
-    /// The recording of a body, and the body with the number of its elements that were turned over and what is left out of its file,
-    /// unless it is the whole of a run.
-    fn of(
-        self,
-        recorded: Recorded,
-        whole: &Body,
-        dimension: Dimension,
-    ) -> Result<(Recorded, Option<(Lists, usize, Vec<String>)>), Flaw> {
+    /// The recording of a body, and the body unless it is the whole of a run.
+    fn of(self, recorded: Recorded, whole: &Body, dimension: Dimension) -> Result<(Recorded, Option<Listed>), Flaw> {
         let wrong = match (dimension, recorded.columns) {
             (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
             (Dimension::Plane, 3) if !recorded.is_flat => {
