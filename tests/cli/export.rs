@@ -148,6 +148,8 @@ fn slow() -> String {
     MIXED
         .replace("frames_per_second = 60", "frames_per_second = 60, step = 0.02")
         .replace("stiffness = 1e4", "stiffness = 10")
+        // So soft, it would lie flat.
+        .replace("-9.8", "-0.1")
 }
 
 #[test]

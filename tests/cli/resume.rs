@@ -61,7 +61,6 @@ fn after_ctrl_c_it_goes_on_from_there() {
     let ran = place.run("simulate scene.toml -o out --resume");
     ran.bad(2, &["to go on from it, type that command with --resume: ", "simulate scene.toml --states -o out"]);
     let before = steps(&place, "out");
-    assert!(before > 0);
     // A second interruption, on the way.
     let typed = format!("{typed} --resume");
     let running = again(&place, &typed);

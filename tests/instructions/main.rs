@@ -25,7 +25,7 @@ fn scene((lattice, model, _): (&str, &str, u64)) -> Scene {
         "gravity = [0, -9.8, 0]
         time = {{ duration = 1, step = 1e-3 }}
         body = {{ lattice = {{ cells = [{CELLS}, {CELLS}, {CELLS}], side = 0.1{lattice} }}, lowest = 0 }}
-        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3, friction_of = 'velocity' }}]
         run = [{{ name = 'one', model = {{ stiffness = 1e4, damping_ratio = 0.1, {model} }} }}]"
     );
     Scene::parse(&text, "block", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))

@@ -17,6 +17,7 @@ fn comments_layout_order_and_spelling_of_numbers_do_not_count() {
         ]
         [[obstacle]]
         friction = 0.3
+        friction_of = 'velocity'
         restitution = 0.5
         kind = "floor"
         [body]
@@ -41,6 +42,8 @@ fn a_default_may_be_typed_or_not() {
     let long = short.replace("duration = 1", "duration = 1\nstep = 'T/50'\nintegrator = 'semi-implicit-euler'")
         + "height = 0.0\nrestitution = -0.0\n[view]\nsize = [1280, 720]\ntheme = 'light'\n";
     assert_eq!(good(&short).digest, good(&long).digest);
+    let rough = short + "friction = 0.5\n";
+    assert_eq!(good(&rough).digest, good(&format!("{rough}friction_of = 'path'\n")).digest);
 }
 
 #[test]
@@ -60,7 +63,8 @@ fn whatever_changes_the_scene_changes_the_digest() {
         ("damping_ratio = 0.1,", "damping_ratio = 0.1, passes = 3,"),
         ("one-diagonal", "face-diagonals"),
         ("friction = 0.3", "friction = 0.4"),
-        ("friction = 0.3", ""),
+        ("friction = 0.3", "friction = 0.0"),
+        ("\"velocity\"", "\"path\""),
         ("1280", "1281"),
         ("charts =", "camera.distance = 3\ncharts ="),
         ("\"Mass-spring\"", "\"mass-spring\""),

@@ -624,6 +624,32 @@ fn surfaces_of_every_format_and_negative_numbers_are_sequences() {
     }
 }
 
+/// The cells of `.mesh` and `.inp` files are elements, not surfaces.
+#[test]
+fn sequences_of_cells_of_medit_and_abaqus_are_bodies_of_cells() {
+    let medit = |x: f64| {
+        format!(
+            "MeshVersionFormatted 2\nDimension 3\nVertices 4\n{x} 0 0 0\n{} 0 0 0\n{x} 1 0 0\n{x} 0 1 0\n\
+             Tetrahedra 1\n1 2 3 4 0\nEnd\n",
+            x + 1.0
+        )
+    };
+    let abaqus = |x: f64| {
+        format!(
+            "*NODE\n1, {x}, 0, 0\n2, {}, 0, 0\n3, {x}, 1, 0\n4, {x}, 0, 1\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n",
+            x + 1.0
+        )
+    };
+    for (ending, of) in [("mesh", &medit as &dyn Fn(f64) -> String), ("inp", &abaqus)] {
+        let [first, second] = [0.0, 1.0].map(of);
+        let names = [0, 1].map(|at| format!("m{at}.{ending}"));
+        let files = [(names[0].as_str(), first.as_bytes()), (names[1].as_str(), second.as_bytes())];
+        let scene = of_sequence(&files, &format!("m*.{ending}"));
+        let elements = &scene.runs[0].body().elements;
+        assert_eq!((elements.len(), elements[0].len(), course(&scene, 2)), (1, 4, vec![0.0, 1.0]), "{ending}");
+    }
+}
+
 /// The triangles of STL files have corners of their own: two tetrahedra that touch at the start, or later, are the same bodies.
 #[test]
 fn corners_of_stl_files_are_joined_as_at_the_start() {
@@ -658,15 +684,17 @@ fn displacements_of_points_at_rest_are_added_and_told() {
         let files: Vec<_> = (0..3).map(|at| with_data(name, components, 0.5 * f64::from(at))).collect();
         of_sequence(&[("m0.vtu", &files[0]), ("m1.vtu", &files[1]), ("m2.vtu", &files[2])], "m*.vtu")
     };
-    for name in ["displacement", "Displacement", "DISPLACEMENT", "U", "u"] {
-        let scene = of(name, 3);
+    for (name, components) in
+        [("displacement", 3), ("Displacement", 3), ("DISPLACEMENT", 3), ("U", 3), ("u", 3), ("displacement", 2)]
+    {
+        let scene = of(name, components);
         assert_eq!(course(&scene, 3), [0.0, 0.5, 1.0], "{name}");
         assert_eq!(scene.runs[0].body().rest[0], DVec3::ZERO, "the shape at rest");
         let told = "`m*.vtu` has points that do not move, to which their array `displacement` or `U` is added";
         assert_eq!(warnings(&scene), told);
     }
     // What cannot be applied is told.
-    for scene in [of("temperature", 1), of("u", 1), of("displacement", 2)] {
+    for scene in [of("temperature", 1), of("u", 1)] {
         assert_eq!(course(&scene, 3), [0.0; 3]);
         assert_eq!(warnings(&scene), "`m*.vtu` does not move: its 3 moments have the same points");
     }
@@ -745,7 +773,12 @@ fn damaged_lists_are_told() {
     let windows = "<VTKFile type='Collection'><DataSet timestep='0' file='x\\a.vtu'/></VTKFile>";
     refused("l.pvd", "l.pvd", windows, "x/a.vtu)");
     refused("b.obj", "b.obj", "v 0 0 0", "`b.obj` is a file of one moment");
-    refused("a0.toml", "a*.toml", "", "`a*.toml: a0.toml` is neither a grid (.vtu, .vtp, .pvtu, .vtk) nor a surface");
+    refused(
+        "a0.toml",
+        "a*.toml",
+        "",
+        "`a*.toml: a0.toml` is neither a grid (.vtu, .vtp, .pvtu, .vtk, .msh, .inp, .mesh) nor a surface",
+    );
 }
 
 /// A body of a recording has no key `convex`, so that the order of nodes is the only remedy.
