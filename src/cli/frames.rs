@@ -199,10 +199,10 @@ mod tests {
         assert_eq!(frames("2, 500ms,0.51 s,0"), [120, 30, 31, 0]);
         assert_eq!(frames("3.008"), [180]);
         assert_eq!(nearest("9s").unwrap_err(), "there is no frame at 9 s; the last one is at 3 s");
-        // The last frame at 29.97 a second is at 0.968 s.
+        // The last frame at 29.97 a second is at 0.9676 s.
         let late = |time: f64| Moments(vec![time]).nearest(29, 1.0, 29.97).map(|found| found[0].1);
         assert_eq!([late(0.99), late(1.0)], [Ok(29), Ok(29)]);
-        assert_eq!(late(1.1).unwrap_err(), "there is no frame at 1.1 s; the last one is at 0.968 s");
+        assert_eq!(late(1.1).unwrap_err(), "there is no frame at 1.1 s; the last one is at 0.9676 s");
         for typed in ["", "s", "2m", "-1", "nan", "1s2", "1,,2"] {
             assert!(nearest(typed).unwrap_err().contains("expected one such as 2s, 500ms or 2"), "{typed}");
         }
