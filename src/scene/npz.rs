@@ -22,8 +22,8 @@ const LONGEST_HEAD: usize = 4096;
 /// The largest allocation for an array before it is read (bytes), larger than most arrays and available on every machine.
 const MOST_RESERVED: u64 = 1 << 26;
 
-/// Bytes that are held together while an array is copied.
-const MOST_HELD: usize = 1 << 26;
+/// Bytes that are held together while an array is copied; few in tests, whose arrays are small.
+const MOST_HELD: usize = if cfg!(test) { 1 << 10 } else { 1 << 26 };
 
 /// An open archive.
 #[derive(Debug)]
@@ -135,31 +135,19 @@ impl Dtype {
 /// The numbers of an array with up to two axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Values {
-    bytes: Vec<u8>,
+    /// The bytes of all numbers.
+    pub(crate) bytes: Vec<u8>,
     dtype: Dtype,
     by_columns: bool,
-    rows: usize,
-    columns: usize,
+    pub(crate) rows: usize,
+    pub(crate) columns: usize,
 }
 
 impl Values {
-    pub(crate) fn rows(&self) -> usize {
-        self.rows
-    }
-
-    pub(crate) fn columns(&self) -> usize {
-        self.columns
-    }
-
     fn raw(&self, row: usize, column: usize) -> &[u8] {
         let at = if self.by_columns { column * self.rows + row } else { row * self.columns + column };
         let width = self.dtype.bytes();
         &self.bytes[at * width..(at + 1) * width]
-    }
-
-    /// The bytes of all numbers.
-    pub(crate) fn bytes(&self) -> &[u8] {
-        &self.bytes
     }
 
     /// One number as an integer, saturated to signed 64 bits. Zero for a fraction.
@@ -362,42 +350,54 @@ impl Npz {
     /// into a temporary file, row by row. Memory does not grow with the array.
     pub(crate) fn unfold(&mut self, array: &mut Array) -> Result<(), String> {
         let [rows, nodes, axes] = array.shape[..] else { return Ok(()) };
-        if array.is_by_rows() || rows == 0 {
+        if array.is_by_rows() || array.shape.contains(&0) {
             return Ok(());
         }
         let failed = |error: io::Error| format!("cannot be copied into a temporary file: {error}");
-        let (width, rows) = (array.width(), if array.by_columns { rows } else { 1 });
-        let (column, row) = (rows as usize * width, array.bytes().unwrap_or(u64::MAX) / rows);
-        let mut copy = tempfile::tempfile().map_err(failed)?;
-        let (mut done, mut fault) = (0, None);
-        self.blocks(array, (MOST_HELD / column).max(1) * column, &mut |block| {
-            // The same part of each row.
-            let mut part = vec![0; block.len() / column * width];
-            // A block that is cut short may be less than a column.
-            let is_cut = part.is_empty();
-            for at in (0..rows).take_while(|_| !is_cut) {
-                for (to, from) in part.chunks_exact_mut(width).zip(block.chunks_exact(column)) {
-                    to.copy_from_slice(&from[at as usize * width..][..width]);
-                }
-                let write = copy.seek(SeekFrom::Start(at * row + done)).and_then(|_| copy.write_all(&part));
-                fault = write.err().or(fault.take());
-            }
-            done += part.len() as u64;
-        })?;
+        let (mut copy, mut fault) = (tempfile::tempfile().map_err(failed)?, None);
+        self.blocks(array, MOST_HELD, &mut |block| fault = copy.write_all(block).err().or(fault.take()))?;
         fault.map_or(Ok(()), Err).map_err(failed)?;
-        // The numbers of a row are still those of the first axis of all nodes, then those of the second, and so on.
-        let mut from = vec![0; if array.by_columns { row as usize } else { 0 }];
-        for at in (0..rows).take_while(|_| array.by_columns) {
-            read_at(&mut copy, at * row, &mut from).map_err(failed)?;
-            let number = |place: usize| (place % axes as usize) * nodes as usize + place / axes as usize;
-            let numbers = (0..from.len() / width).flat_map(|place| &from[number(place) * width..][..width]);
-            let to: Vec<u8> = numbers.copied().collect();
-            copy.seek(SeekFrom::Start(at * row)).and_then(|_| copy.write_all(&to)).map_err(failed)?;
+        if array.by_columns {
+            copy = by_rows(&mut copy, [rows, nodes, axes], array.width()).map_err(failed)?;
         }
         self.copies.insert(array.index, copy);
         *array = Array { is_big: false, by_columns: false, is_packed: false, head: 0, ..array.clone() };
         Ok(())
     }
+}
+
+/// Copies numbers of a width (bytes) in Fortran order into a temporary file row by row: parts of rows with parts of the nodes.
+fn by_rows(from: &mut File, [rows, nodes, axes]: [u64; 3], width: usize) -> io::Result<File> {
+    let (mut to, wide) = (tempfile::tempfile()?, width as u64);
+    let most = (MOST_HELD as u64 / wide / axes).max(1);
+    let across = (most / rows).max(most.isqrt()).min(nodes);
+    let down = (most / across).min(rows);
+    // The numbers of neighbouring nodes follow each other only where a part has all rows.
+    let together = if down == rows { across } else { 1 };
+    let (mut part, mut column) = (Vec::new(), Vec::new());
+    for (node, row) in (0..nodes)
+        .step_by(across as usize)
+        .flat_map(|node| (0..rows).step_by(down as usize).map(move |row| (node, row)))
+    {
+        let (across, down) = (across.min(nodes - node), down.min(rows - row));
+        let line = (across * axes) as usize * width;
+        part.resize(down as usize * line, 0);
+        for (axis, first) in
+            (0..axes).flat_map(|axis| (0..across).step_by(together as usize).map(move |node| (axis, node)))
+        {
+            column.resize((together.min(across - first) * down) as usize * width, 0);
+            read_at(from, ((axis * nodes + node + first) * rows + row) * wide, &mut column)?;
+            for (at, number) in (0..).zip(column.chunks_exact(width)) {
+                let (node, row) = (first + at / down, (at % down) as usize);
+                part[row * line + (node * axes + axis) as usize * width..][..width].copy_from_slice(number);
+            }
+        }
+        for (row, line) in (row..).zip(part.chunks_exact(line)) {
+            to.seek(SeekFrom::Start((row * nodes + node) * axes * wide))?;
+            to.write_all(line)?;
+        }
+    }
+    Ok(to)
 }
 
 /// Reads the bytes at a place.

@@ -44,3 +44,23 @@ fn whole_numbers_of_all_widths_keep_their_sign() {
         assert_eq!((numbers.whole(0, 0), numbers.double(0, 1)), (largest, 5.0));
     }
 }
+
+/// Whole rows, whole columns, and parts of both are held together.
+#[test]
+fn columns_become_rows() {
+    for [rows, nodes, axes] in [[1, 1, 3], [500, 1, 3], [500, 7, 2], [3, 200, 3], [40, 40, 3], [1, 400, 3], [7, 18, 1]]
+    {
+        let number = |row: u64, node: u64, axis: u64| ((row * nodes + node) * axes + axis) as u16;
+        let all =
+            |[a, b, c]: [u64; 3]| (0..a).flat_map(move |a| (0..b).flat_map(move |b| (0..c).map(move |c| [a, b, c])));
+        let of_columns: Vec<u8> =
+            all([axes, nodes, rows]).flat_map(|[axis, node, row]| number(row, node, axis).to_le_bytes()).collect();
+        let mut from = tempfile::tempfile().unwrap();
+        from.write_all(&of_columns).unwrap();
+        let mut found = Vec::new();
+        let mut copy = by_rows(&mut from, [rows, nodes, axes], 2).unwrap();
+        copy.rewind().and_then(|()| copy.read_to_end(&mut found)).unwrap();
+        let expected: Vec<u8> = (0..(rows * nodes * axes) as u16).flat_map(u16::to_le_bytes).collect();
+        assert!(found == expected, "{rows} × {nodes} × {axes}");
+    }
+}

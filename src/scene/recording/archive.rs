@@ -307,7 +307,7 @@ impl Archive {
             return Err(flaw(format!("has the shape {}; expected {expected}", array.shape_in_words())));
         }
         let values = self.npz.values(&array).map_err(flaw)?;
-        Ok((0..values.rows()).map(|row| values.double(row, 0)).collect())
+        Ok((0..values.rows).map(|row| values.double(row, 0)).collect())
     }
 }
 

@@ -90,7 +90,7 @@ impl Course {
         }
         let values = npz.values(&array).map_err(flaw)?;
         let damaged = |_| flaw("was not written by this program".to_owned());
-        let (origin, rest): (Origin, _) = postcard::take_from_bytes(values.bytes()).map_err(damaged)?;
+        let (origin, rest): (Origin, _) = postcard::take_from_bytes(&values.bytes).map_err(damaged)?;
         if origin.version != env!("CARGO_PKG_VERSION") {
             return Ok((origin, Self::default(), Vec::new()));
         }

@@ -313,7 +313,7 @@ impl Reader<'_, '_> {
                 None
             }
         });
-        let columns = nodes.as_ref().map(|values| values.columns() as u64);
+        let columns = nodes.as_ref().map(|values| values.columns as u64);
         let dimension = if columns == Some(2) { Dimension::Plane } else { Dimension::Space };
         let nodes = nodes.map(|values| self.points("nodes", &values));
         let elements = self.array("elements").and_then(|array| self.rows_of_indices("elements", &array, 2));
@@ -399,12 +399,12 @@ impl Reader<'_, '_> {
     }
 
     fn points(&mut self, key: &str, values: &Values) -> Vec<DVec3> {
-        let flat = values.columns() == 2;
+        let flat = values.columns == 2;
         let point = |row| {
             let z = if flat { 0.0 } else { self.number(key, values, &[row, 2]) };
             DVec3::new(self.number(key, values, &[row, 0]), self.number(key, values, &[row, 1]), z)
         };
-        (0..values.rows()).map(point).collect()
+        (0..values.rows).map(point).collect()
     }
 
     /// Points with `columns` coordinates, if the number of coordinates is known.
@@ -428,8 +428,8 @@ impl Reader<'_, '_> {
             return None;
         }
         let values = self.values(key, array)?;
-        let mut masses = Vec::with_capacity(values.rows());
-        for row in 0..values.rows() {
+        let mut masses = Vec::with_capacity(values.rows);
+        for row in 0..values.rows {
             let before = self.report.total();
             let mass = self.number(key, &values, &[row]);
             if mass <= 0.0 && self.report.total() == before {
@@ -466,8 +466,8 @@ impl Reader<'_, '_> {
 
     fn pairs(&mut self, key: &str, array: &Array) -> Option<Vec<[u32; 2]>> {
         let values = self.indices(key, array, |columns| columns == 2, "one row for each spring with 2 nodes")?;
-        let mut pairs = Vec::with_capacity(values.rows());
-        for row in 0..values.rows() {
+        let mut pairs = Vec::with_capacity(values.rows);
+        for row in 0..values.rows {
             let pair = [0, 1].map(|column| self.index(key, &values, [row, column]));
             pairs.push(pair.map(Option::unwrap_or_default));
         }
@@ -479,11 +479,11 @@ impl Reader<'_, '_> {
         let expected = format!("one row for each of the {key} with at least {least} nodes");
         let values = self.indices(key, array, |columns| columns >= least as u64, &expected)?;
         let mut lists = IndexLists::default();
-        let mut row_of = Vec::with_capacity(values.columns());
-        for row in 0..values.rows() {
+        let mut row_of = Vec::with_capacity(values.columns);
+        for row in 0..values.rows {
             row_of.clear();
             let before = self.report.total();
-            let used = (0..values.columns()).rev().find(|&column| values.whole(row, column) != -1);
+            let used = (0..values.columns).rev().find(|&column| values.whole(row, column) != -1);
             let used = used.map_or(0, |last| last + 1);
             for column in 0..used {
                 match values.whole(row, column) {
