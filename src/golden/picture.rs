@@ -84,55 +84,57 @@ impl Pixels {
         if !file.starts_with(SIGNATURE) {
             return Err(PictureError::Foreign);
         }
+        /// Pixels that need no change.
+        const PLAIN: Kind = (png::ColorType::Rgb, png::BitDepth::Eight);
         let mut decoder = decoder(Cursor::new(file));
-        let [width, height] = decoder.read_header_info().map(|info| [info.width, info.height]).map_err(broken)?;
+        let info = decoder.read_header_info().map_err(broken)?;
+        let ([width, height], kind) = ([info.width, info.height], (info.color_type, info.bit_depth));
         if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(PictureError::Size(width, height));
         }
-        decoder.set_transformations(png::Transformations::EXPAND);
+        let (expand, opacities) = (png::Transformations::EXPAND, png::Transformations::ALPHA);
+        decoder.set_transformations(if kind == PLAIN { expand } else { expand | opacities });
         let mut reader = decoder.read_info().map_err(broken)?;
         check(reader.info()).map_err(PictureError::Kind)?;
         let label = Tags::of(reader.info()).map_err(PictureError::Label)?;
-        let kind @ (colour, _) = reader.output_color_type();
+        let kind = reader.output_color_type();
         let row = 3 * width as usize;
         let mut bytes = vec![0; row * height as usize];
-        let mut on_black = if has_opacities(colour) { vec![0; bytes.len()] } else { Vec::new() };
+        let mut on_black = if kind == PLAIN { Vec::new() } else { vec![0; bytes.len()] };
         let mut line = vec![0; reader.output_line_size(width).unwrap_or(0)];
         for (at, white) in bytes.chunks_exact_mut(row).enumerate() {
-            let is_plain = kind == (png::ColorType::Rgb, png::BitDepth::Eight);
-            let read = reader.read_row(if is_plain { &mut *white } else { &mut line }).map_err(broken)?;
+            let read = reader.read_row(if kind == PLAIN { &mut *white } else { &mut line }).map_err(broken)?;
             read.ok_or_else(|| PictureError::Broken("rows are missing".to_owned()))?;
-            if !is_plain {
-                show(&line, kind, white, on_black.get_mut(at * row..(at + 1) * row).unwrap_or_default());
+            if kind != PLAIN {
+                show(&line, kind, white, &mut on_black[at * row..(at + 1) * row]);
             }
         }
         reader.finish().map_err(broken)?;
         if Tags::of(reader.info()).map_err(PictureError::Label)? != label {
             return Err(PictureError::Late);
         }
-        let on_black = (has_opacities(colour) && on_black != bytes).then_some(on_black);
+        let on_black = (kind != PLAIN && on_black != bytes).then_some(on_black);
         Ok(Self { size: [width, height], bytes, on_black, label })
     }
 }
 
-fn has_opacities(colour: png::ColorType) -> bool {
-    matches!(colour, png::ColorType::Rgba | png::ColorType::GrayscaleAlpha)
-}
+/// The numbers of a pixel, and their bits.
+type Kind = (png::ColorType, png::BitDepth);
 
-/// Writes what a row of pixels shows on white, and on black if there is room for it, rounded to 8 bits. Opacities act on the numbers
-/// as they are, as in browsers.
-fn show(line: &[u8], (colour, depth): (png::ColorType, png::BitDepth), white: &mut [u8], black: &mut [u8]) {
-    let samples: Vec<u64> = match depth {
-        png::BitDepth::Sixteen => line.as_chunks::<2>().0.iter().map(|&two| u16::from_be_bytes(two).into()).collect(),
-        _ => line.iter().map(|&byte| byte.into()).collect(),
+/// Writes what a row of pixels with opacities shows on white and on black, rounded to 8 bits. Opacities act on the numbers as they are,
+/// as in browsers.
+fn show(line: &[u8], (colour, depth): Kind, white: &mut [u8], black: &mut [u8]) {
+    let (samples, most): (Vec<u64>, u64) = match depth {
+        png::BitDepth::Sixteen => {
+            let samples = line.as_chunks::<2>().0.iter().map(|&two| u16::from_be_bytes(two).into());
+            (samples.collect(), u16::MAX.into())
+        }
+        _ => (line.iter().map(|&byte| byte.into()).collect(), u8::MAX.into()),
     };
-    let most = if depth == png::BitDepth::Sixteen { u16::MAX.into() } else { u64::from(u8::MAX) };
-    let mut black = black.as_chunks_mut::<3>().0.iter_mut();
-    for (pixel, white) in samples.chunks_exact(colour.samples()).zip(white.as_chunks_mut::<3>().0) {
+    let shown = white.as_chunks_mut::<3>().0.iter_mut().zip(black.as_chunks_mut::<3>().0);
+    for (pixel, (white, black)) in samples.chunks_exact(colour.samples()).zip(shown) {
         let (light, opacity) = match *pixel {
-            [grey] => ([grey; 3], most),
             [grey, opacity] => ([grey; 3], opacity),
-            [red, green, blue] => ([red, green, blue], most),
             _ => ([pixel[0], pixel[1], pixel[2]], pixel[3]),
         };
         let square = most * most;
@@ -140,8 +142,7 @@ fn show(line: &[u8], (colour, depth): (png::ColorType, png::BitDepth), white: &m
             let seen = |light: u64| light * opacity + ground * (most - opacity);
             light.map(|light| ((seen(light) * u64::from(u8::MAX) + square / 2) / square) as u8)
         };
-        *white = on(most);
-        black.next().into_iter().for_each(|black| *black = on(0));
+        (*white, *black) = (on(most), on(0));
     }
 }
 
