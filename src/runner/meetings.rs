@@ -2,15 +2,14 @@
 
 use crate::reading::words::short;
 use crate::scene::Scene;
-use crate::sim::geometry::{apart, overlaps};
+use crate::sim::geometry::overlaps;
 use crate::sim::{Moment, State, Status, World};
 use std::collections::BTreeSet;
 
 /// Watches a run until two of its bodies overlap that were apart at the start.
 ///
 /// It looks at steps, however they are divided into calls. Until the next look no node moves, at the present speeds, farther relative
-/// to another than half the way between bodies, or a quarter of an element. Where a look finds an overlap, the steps since the look
-/// before are taken again, one by one.
+/// to another than a quarter of an element. Where a look finds an overlap, the steps since the look before are taken again, one by one.
 pub(super) struct Watch {
     /// The pairs that overlap at the start, which the check of the scene tells.
     known: BTreeSet<[usize; 2]>,
@@ -24,7 +23,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// The most steps between two looks: a look then costs little beside them.
-    const MOST: f64 = 32.0;
+    const MOST: f64 = 16.0;
 
     /// Watches a run from the start of its world; `None` if no two bodies of it can be told of.
     pub(super) fn new(scene: &Scene, run: usize, world: &World) -> Option<Self> {
@@ -78,11 +77,10 @@ impl Watch {
         let Self { known, side, last, next } = self;
         let (of, is_new) = (&scene.runs[run], |pair: [usize; 2]| !known.contains(&pair));
         let State { position, velocity, .. } = world.state();
-        let gap = apart(&of.bodies, position, is_new);
-        if gap > 0.0 || overlaps(&of.bodies, position, is_new).next().is_none() {
+        if overlaps(&of.bodies, position, is_new).next().is_none() {
             let mean = velocity.iter().sum::<glam::DVec3>() / velocity.len() as f64;
             let fastest = velocity.iter().map(|speed| speed.distance(mean)).fold(0.0, f64::max);
-            let steps = (gap / 2.0).max(*side / 4.0) / (2.0 * fastest * of.step);
+            let steps = *side / 4.0 / (2.0 * fastest * of.step);
             last.clone_from(world.state());
             *next = last.steps + steps.clamp(1.0, Self::MOST) as u64;
             return None;

@@ -3,8 +3,6 @@
 use super::*;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::Limits;
-use crate::sim::Assembly;
-use std::sync::Arc;
 
 /// A cube falls on a block that is held, and a small fast one flies through both a little earlier in another run.
 fn scene(rate: f64, integrator: &str) -> Scene {
@@ -109,20 +107,4 @@ fn an_interruption_changes_no_message() {
         messages.sort_by_key(|message| message.contains("shot"));
         assert_eq!(messages, expected, "after {taken} frames");
     }
-}
-
-#[test]
-fn boxes_are_apart_along_one_axis() {
-    // A cube with a side of 0.2 m, in sides.
-    let cube = scene(100.0, "semi-implicit-euler").bodies.swap_remove(0).body;
-    let least = |moves: [[f64; 2]; 3], wanted: fn([usize; 2]) -> bool| {
-        let at = |[x, y]: [f64; 2]| cube.rest.iter().map(move |&at| at + 0.2 * glam::DVec3::new(x, y, 0.0));
-        let position: Vec<_> = moves.into_iter().flat_map(at).collect();
-        apart(&Assembly::new(vec![Arc::clone(&cube); 3]), &position, wanted) / 0.2
-    };
-    let moves = [[0.0, 0.0], [3.0, 0.0], [2.0, 4.0]];
-    let found = [least(moves, |_| true), least(moves, |pair| pair != [0, 1])];
-    assert!((found[0] - 2.0).abs() + (found[1] - 3.0).abs() < 1e-12, "{found:?}");
-    assert_eq!(least([[0.0, 0.0], [0.5, 0.5], [9.0, 0.0]], |_| true), 0.0);
-    assert_eq!(apart(&Assembly::new(vec![Arc::clone(&cube)]), &cube.rest, |_| true), f64::INFINITY);
 }
