@@ -1,6 +1,7 @@
 //! File formats.
 
 use super::AnimationError;
+use crate::reading::beside::ending;
 use std::path::Path;
 
 /// A file format, selected by the extension of the file name.
@@ -26,7 +27,7 @@ impl Format {
     /// # Errors
     /// If the extension is unknown, with the known ones.
     pub fn of(path: &Path) -> Result<Self, String> {
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let ending = ending(path);
         let known = Self::ENDINGS.iter().find(|(known, _)| *known == ending);
         known.map(|(_, format)| *format).ok_or_else(|| {
             let found = if ending.is_empty() { "no ending".to_owned() } else { format!("the ending .{ending}") };

@@ -9,7 +9,7 @@ use super::options::{PrintOptions, ThreadOptions, number_in};
 use crate::animation::{Animation, AnimationError, Format, Image, Reel, Timeline, Written, resized};
 use crate::golden::Pixels;
 use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, picture_size, read_tags};
-use crate::reading::beside;
+use crate::reading::beside::{self, name_of};
 use clap::{Args, ValueHint};
 use serde_json::json;
 use std::ffi::OsString;
@@ -285,10 +285,6 @@ fn others(path: &Path, rate: Option<f64>) -> Result<(Vec<(u64, PathBuf)>, f64), 
         );
     };
     Ok((found.into_iter().map(|(number, file)| (number.unsigned_abs(), file)).collect(), rate))
-}
-
-fn name_of(file: &Path) -> String {
-    file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn quoted(names: &[String]) -> String {

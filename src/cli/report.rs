@@ -3,7 +3,7 @@
 use super::console::columns;
 use crate::output::{Numbers, Outcome, RunStatus, RunSummary, Spent, Summary};
 use crate::reading::captions::quantity;
-use crate::reading::words::short;
+use crate::reading::words::{several, short};
 use crate::sim::{Diagnostic, Unsolved};
 use std::fmt::Write;
 use std::path::Path;
@@ -68,7 +68,7 @@ fn rows(run: &RunSummary) -> Vec<[String; 5]> {
         }
     };
     if let Some(Unsolved { steps, .. }) = run.unsolved {
-        status += &format!(", {steps} step{} not solved", if steps == 1 { "" } else { "s" });
+        status += &format!(", {} not solved", several(steps, "step"));
     }
     let row = |name: String, status: String, numbers: Option<&Numbers>| {
         let Some(Numbers { diagnostics, broken, .. }) = numbers else {

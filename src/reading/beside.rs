@@ -28,6 +28,16 @@ pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, exp
     }
 }
 
+/// The ending of a file in small letters; empty if it has none.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// The name of a file without its folder.
+pub(crate) fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 /// The paths of all files in a folder.
 ///
 /// # Errors
@@ -36,14 +46,18 @@ pub(crate) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect()
 }
 
-/// The files in a folder whose names have a number between `before` and `after`, in the order of their numbers. Other words may stand
-/// before the number, the same in all names. A minus there is the sign of the number if another of the files has the number 0 without it.
+/// The files in a folder whose names have a number between `before` and `after`, in the order of their numbers. `after` may be in
+/// capital letters or not. Other words may stand before the number, the same in all names. A minus there is the sign of the number if another of the files has the number 0 without it.
 ///
 /// # Errors
 /// The folder cannot be read, or has several such sequences.
 pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(i64, PathBuf)>, Wrong> {
     let split = |path: PathBuf| {
-        let inner = path.file_name()?.to_str()?.strip_prefix(before)?.strip_suffix(after)?;
+        let inner = path.file_name()?.to_str()?.strip_prefix(before)?;
+        let (inner, end) = inner.split_at_checked(inner.len().checked_sub(after.len())?)?;
+        if !end.eq_ignore_ascii_case(after) {
+            return None;
+        }
         let stem = inner.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
         Some((stem.clone(), inner[stem.len()..].parse::<i64>().ok()?, path))
     };
@@ -66,7 +80,7 @@ pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(
         ));
     }
     if let Some(pair) = found.windows(2).find(|pair| pair[0].1 == pair[1].1) {
-        let [one, other] = [&pair[0].2, &pair[1].2].map(|path| path.file_name().unwrap_or_default().to_string_lossy());
+        let [one, other] = [&pair[0].2, &pair[1].2].map(|path| name_of(path));
         return Err((format!("has two files of one number, {one} and {other}; expected one"), None));
     }
     Ok(found.into_iter().map(|(_, number, path)| (number, path)).collect())
@@ -91,10 +105,7 @@ pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = fs::read_dir(folder).ok()?.flatten().take(10_000);
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let has_ending = |name: &String| {
-        let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        ending.is_some_and(|ending| endings.contains(&ending.as_str()))
-    };
+    let has_ending = |name: &String| endings.contains(&&*ending(Path::new(name)));
     let mut similar: Vec<(String, String)> =
         names.filter(has_ending).filter_map(|name| Some((stem(Path::new(&name))?, name))).collect();
     similar.sort();

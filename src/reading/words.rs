@@ -92,6 +92,12 @@ pub(crate) fn count(number: u128) -> String {
     text
 }
 
+/// A number of things: `1 body`, `1 030 301 nodes`.
+pub(crate) fn several(number: impl TryInto<u128>, one: &str) -> String {
+    let number = number.try_into().unwrap_or(u128::MAX);
+    format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" })
+}
+
 /// A number with up to four significant digits.
 pub(crate) fn short(number: f64) -> String {
     significant(number, 4)
@@ -193,5 +199,6 @@ mod tests {
         assert_eq!(count(0), "0");
         assert_eq!(count(999), "999");
         assert_eq!(count(1_030_301), "1 030 301");
+        assert_eq!([0, 1, 1000].map(|number: usize| several(number, "node")), ["0 nodes", "1 node", "1 000 nodes"]);
     }
 }

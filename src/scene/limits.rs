@@ -1,7 +1,7 @@
 //! Untrusted sizes are validated here before anything is allocated.
 
 use super::file::ModelFile;
-use crate::reading::words::{count, size};
+use crate::reading::words::{count, several, size};
 use std::collections::BTreeMap;
 
 /// The largest accepted scene. Larger scenes are refused before memory is allocated for them.
@@ -111,7 +111,6 @@ pub(super) fn excess(
     };
     let springs = parts().map(springs_of).fold(0, u128::saturating_add);
 
-    let several = |number: u128, one: &str| format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" });
     let parts = match springs {
         0 => format!("{} and {}", several(nodes, "node"), several(elements, "element")),
         _ => {

@@ -5,8 +5,8 @@ mod summary;
 pub(crate) use summary::MeshSummary;
 
 use super::limits::Limits;
-use crate::reading::beside::{self, Wrong};
-use crate::reading::words::{count, list, nearest, short};
+use crate::reading::beside::{self, Wrong, ending};
+use crate::reading::words::{count, list, nearest, several, short};
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
@@ -75,11 +75,6 @@ impl MeshFile {
 pub(crate) fn is_mesh(path: &Path) -> bool {
     let ending = ending(path);
     Format::of(&ending).is_some() || mesh::converter(&ending).is_some()
-}
-
-/// The ending of a file in small letters.
-fn ending(path: &Path) -> String {
-    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
 /// The remedy for a file with an ending that is not read.
@@ -171,7 +166,8 @@ pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
         (flaws.turned, "triangle", " turned over"),
     ]
     .into_iter()
-    .filter_map(|(number, one, what)| Some(format!("{}{what}", several(number, one)?)))
+    .filter(|(number, ..)| *number > 0)
+    .map(|(number, one, what)| several(number, one) + what)
     .collect()
 }
 
@@ -184,7 +180,8 @@ pub(crate) fn left(flaws: &Flaws, closed: bool) -> Option<(String, String)> {
         (flaws.inconsistent, "edge", " whose triangles look to different sides"),
     ]
     .into_iter()
-    .filter_map(|(number, one, what)| Some(format!("{}{what}", several(number, one)?)))
+    .filter(|(number, ..)| *number > 0)
+    .map(|(number, one, what)| several(number, one) + what)
     .collect();
     let (what, help) = match closed {
         true => ("where parts may be joined or not", "separate or join them in the program that made it"),
@@ -223,12 +220,6 @@ pub(crate) fn doubts(cage: &Cage, volume: f64, side: f64, longest: f64, is_typed
         doubts.push((message, format!("use {finer}, or make it thicker")));
     }
     doubts
-}
-
-/// A number of things; `None` for none.
-pub(crate) fn several(number: usize, one: &str) -> Option<String> {
-    let plural = if number == 1 { "" } else { "s" };
-    (number > 0).then(|| format!("{} {one}{plural}", count(number as u128)))
 }
 
 #[cfg(test)]

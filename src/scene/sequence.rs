@@ -5,7 +5,7 @@ use super::limits::Limits;
 use super::npy::begin;
 use super::npz::Npz;
 use super::recording::{Flaw, check_length};
-use crate::reading::beside::{self, Wrong};
+use crate::reading::beside::{self, Wrong, ending, name_of};
 use crate::reading::words::{count, short};
 use glam::DVec3;
 use localshape_mesh::{self as mesh, Cells, Format};
@@ -134,14 +134,22 @@ fn in_order(all: &[mesh::Listed], path: &Path, notes: &mut Vec<Wrong>) -> Vec<Li
     let mut moments: Vec<Listed> = Vec::new();
     // Where the list begins again after a restart, the time of the first one, and the number of moments left out.
     let (mut begin, mut restart, mut left_out) = (0, None, 0);
-    for of_time in order.chunk_by(|&one, &other| all[one].time == all[other].time) {
+    let times: Vec<&[usize]> = order.chunk_by(|&one, &other| all[one].time == all[other].time).collect();
+    // A run that was started again has some times once.
+    let is_even = times.iter().all(|of_time| of_time.len() == times[0].len());
+    let mut shares_part = false;
+    for of_time in times {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         // The files and parts of the last moment.
         let mut known = HashSet::new();
         for &at in of_time {
             let keys = || [Ok(&all[at].file)].into_iter().chain(all[at].part.as_ref().map(Err));
             // Files of one time are bodies of one moment, until a file or a part comes again.
-            if groups.is_empty() || keys().any(|key| known.contains(&key)) {
+            let comes_again = keys().any(|key| known.contains(&key));
+            let last = groups.last().and_then(|group| group.last());
+            let is_body = is_even && last.is_some_and(|last| last + 1 != at) && !known.contains(&Ok(&all[at].file));
+            shares_part |= comes_again && is_body;
+            if groups.is_empty() || comes_again && !is_body {
                 groups.push(Vec::new());
                 known.clear();
             }
@@ -160,6 +168,11 @@ fn in_order(all: &[mesh::Listed], path: &Path, notes: &mut Vec<Wrong>) -> Vec<Li
         let moment = |group: Vec<usize>| Listed { time: all[group[0]].time, files: group.iter().map(beside).collect() };
         moments.extend(groups.into_iter().map(moment));
     }
+    notes.extend(shares_part.then(|| {
+        let message =
+            "has one `part` for several files of each time, which are taken as bodies of one moment".to_owned();
+        (message, Some("give each body a `part` of its own, or list each moment once".to_owned()))
+    }));
     notes.extend(restart.map(|time| {
         let (plural, time) = (if left_out == 1 { " is" } else { "s are" }, short(time));
         let message =
@@ -196,10 +209,6 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
     Ok(found.into_iter().map(moment).collect())
 }
 
-fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
 /// A moment as read.
 #[derive(Clone, Default)]
 struct Moment {
@@ -224,7 +233,7 @@ impl Moment {
             let name = name_of(path);
             let told = |(message, help): Wrong| Flaw { place: name.clone(), message, help };
             let of_mesh = |error: mesh::ReadError| told((error.message, error.help));
-            let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+            let ending = ending(path);
             if !matches!(&*ending, "pvtu" | "pvtp") {
                 moment.add(path, limits)?;
                 continue;
@@ -244,7 +253,7 @@ impl Moment {
     fn add(&mut self, path: &Path, limits: &Limits) -> Result<(), Flaw> {
         let name = name_of(path);
         let told = |(message, help): Wrong| Flaw { place: name.clone(), message, help };
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let ending = ending(path);
         let Some(format) = Format::of(&ending) else {
             return Err(Flaw::new(
                 &name,

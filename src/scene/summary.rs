@@ -2,7 +2,7 @@
 
 use super::{Run, Scene, SceneBody, stability};
 use crate::reading::captions::{self, description, typed};
-use crate::reading::words::{count, ends, list, short};
+use crate::reading::words::{count, ends, list, several, short};
 use crate::sim::geometry::bounds;
 use crate::sim::stability::Stability;
 use crate::sim::{Dimension, FrictionOf, Grip, Kernel, Motion, Obstacle, Shape};
@@ -322,8 +322,7 @@ impl fmt::Display for SceneSummary {
         }
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
-        let plural = if self.frames == 1 { "" } else { "s" };
-        line("time", &format!("{duration} s, {} frame{plural} at {rate} per second", count(self.frames.into())))?;
+        line("time", &format!("{duration} s, {} at {rate} per second", several(self.frames, "frame")))?;
         if self.cycle.is_finite() {
             line("cycle", &format!("T = {} s", short(self.cycle)))?;
         }

@@ -525,6 +525,10 @@ fn frames_of_other_programs_have_the_rate_that_is_given() {
         bytes
     };
     (1..=6).for_each(|number| place.write(&format!("other/render.{number:04}.png"), &file(number)));
+    // Cameras and programs on Windows write capital letters.
+    (1..=6).for_each(|number| place.write(&format!("capitals/DSC{number:04}.PNG"), &file(number)));
+    let ran = place.run("animate capitals -o capitals.apng --fps 30").good();
+    assert!(ran.out.starts_with("capitals.apng  64×48, 6 pictures in 0.20 s, "), "{}", ran.out);
     bad(
         &place,
         "other -o out.apng",

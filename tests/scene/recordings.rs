@@ -732,6 +732,12 @@ fn lists_of_other_programs_are_read() {
     let bodies = load("l.pvd", &list(&sets));
     assert_eq!((bodies.runs[0].body().len(), bodies.warnings.len()), (8, 0));
     assert_eq!(course(&bodies, 2), [0.0, 1.0]);
+    // So too with one part for all, where each time has as many files.
+    let sets = [(0.0, "a.vtu"), (0.1, "b.vtu"), (0.0, "b.vtu"), (0.1, "c.vtu")];
+    let bodies = load("l.pvd", &list(&sets.map(|(time, file)| (time, file, "part='0'"))));
+    assert_eq!((bodies.runs[0].body().len(), course(&bodies, 2)), (8, vec![0.0, 1.0]));
+    let told = "`l.pvd` has one `part` for several files of each time, which are taken as bodies of one moment";
+    assert_eq!(bodies.warnings.iter().map(|told| &*told.message).collect::<Vec<_>>(), [told]);
     // Started again at .1 s after .3 s: what was at .1 and .3 s is of the first start.
     let sets = [(0.0, "a.vtu"), (0.1, "c.vtu"), (0.3, "c.vtu"), (0.1, "b.vtu"), (0.2, "c.vtu"), (0.4, "a.vtu")];
     let again = load("l.pvd", &list(&sets.map(|(time, file)| (time, file, "part='0'"))));

@@ -3,7 +3,7 @@
 use super::{CELLS, MeshFile, crossing, doubts, left, longest, mended, parts};
 use crate::reading::beside::Wrong;
 use crate::reading::captions;
-use crate::reading::words::{count, list, quoted, short};
+use crate::reading::words::{count, list, quoted, several, short};
 use crate::scene::limits::Limits;
 use crate::sim::geometry::{bounds, volumes_at_rest};
 use crate::sim::{Body, Dimension};
@@ -222,8 +222,6 @@ fn crossed(body: &Body) -> Option<String> {
 impl fmt::Display for MeshSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = |name: &str, text: &str| writeln!(f, "  {name:<10} {text}");
-        let several =
-            |number: usize, one: &str| format!("{} {one}{}", count(number as u128), if number == 1 { "" } else { "s" });
         let sides: Vec<_> = self.extent.iter().map(|&side| short(side)).collect();
         let size = format!("{} in the unit of the file", sides.join(" × "));
         let points = several(self.points, "point");

@@ -14,7 +14,7 @@ pub(crate) use course::{COURSE, Course, Origin, StoredRun};
 use super::file::Up;
 use super::limits::Limits;
 use super::mesh;
-use crate::reading::words::{count, short};
+use crate::reading::words::{count, several, short};
 use crate::sim::{Divergence, Recording, State};
 use glam::DVec3;
 use std::collections::VecDeque;
@@ -117,7 +117,7 @@ pub(crate) struct Flaw {
 }
 
 impl Flaw {
-    pub(super) fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
+    pub(crate) fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
         Self { place: place.into(), message: message.into(), help: None }
     }
 
@@ -156,8 +156,7 @@ impl Recorded {
 
     /// Where it comes from, and its number of states: `MuJoCo 4.0, recorded, 61 states`.
     pub(crate) fn description(&self) -> String {
-        let moments = count(self.moments() as u128);
-        format!("{}, recorded, {moments} state{}", self.source(), if self.moments() == 1 { "" } else { "s" })
+        format!("{}, recorded, {}", self.source(), several(self.moments(), "state"))
     }
 
     /// Its states after numbers of steps (s).

@@ -3,10 +3,10 @@
 use super::Place;
 use super::lists::{ListSource, Lists};
 use crate::reading::collector::{Collector, key_path, written};
-use crate::reading::words::{count, list, short};
+use crate::reading::words::{count, list, several, short};
 use crate::scene::file::{BodyFile, FillFile, FillKind, LARGEST, Positive, Up};
 use crate::scene::limits::Limits;
-use crate::scene::mesh::{self, CELLS, MeshFile, several};
+use crate::scene::mesh::{self, CELLS, MeshFile};
 use crate::sim::{Dimension, IndexLists};
 use localshape_mesh::{Cage, Fill, Filled, Group, Mesh, Surface, Volume, fill};
 use std::path::Path;
@@ -76,7 +76,7 @@ pub(super) fn make(
         return None;
     }
     if let Some(Positive(weld)) = file.weld.filter(|_| read.joined > 0) {
-        let joined = several(read.joined, "point").unwrap_or_default();
+        let joined = several(read.joined, "point");
         report.warn(
             &path,
             format!("`{name}` is mended: {joined} welded, nearer than weld = {} m to others", short(weld)),
