@@ -4,7 +4,7 @@ use super::mesh::longest;
 use super::{Run, Scene, SceneBody};
 use crate::reading::captions::{quantity, rounded};
 use crate::reading::words::{list, quoted, short};
-use crate::sim::geometry::volumes_at_rest;
+use crate::sim::geometry::node_volumes;
 use crate::sim::model::ElasticModel;
 use crate::sim::{Body, Dimension, State};
 use glam::DVec3;
@@ -45,15 +45,21 @@ impl Scene {
         Some([message, format!("lengths are in metres: write scale = {scale} in this run if its unit is another one")])
     }
 
-    /// The message for the bodies that lie flat under their own weight, the remedy for the softest one, and its run.
-    pub(super) fn lies_flat(&self) -> Option<(usize, [String; 2])> {
+    /// The message for the bodies that their own weight flattens or draws out, the remedy for the softest one, and its run.
+    pub(super) fn too_soft(&self) -> Option<(usize, [String; 2])> {
         /// The mean strain from which on a body is told of. Linear theory then compresses its lowest layer by two thirds: of
         /// the shape that was meant nothing is left.
         const FLAT: f64 = 1.0 / 3.0;
         /// The mean strain of the remedy.
         const FIRM: f64 = 0.1;
+        let is_carried = |run: &Run| !self.obstacles.is_empty() || !run.grips.is_empty();
+        if self.gravity == DVec3::ZERO || !self.runs.iter().any(is_carried) {
+            return None;
+        }
+        let volumes: Vec<f64> = self.bodies.iter().map(|body| node_volumes(&body.body).iter().sum()).collect();
         let parts = self.runs.iter().enumerate().flat_map(|(number, run)| {
-            run.parts(self).enumerate().filter_map(move |(place, part)| self.soft(number, place, part))
+            let parts = run.parts(self).enumerate().zip(run.of.iter().map(|&body| volumes[body]));
+            parts.filter_map(move |((place, part), volume)| self.soft(number, place, part, volume))
         });
         let found: Vec<_> = parts.filter(|soft| soft.strain / 2.0 > FLAT).collect();
         let Soft { run, body, model, height, young, strain } =
@@ -63,7 +69,7 @@ impl Scene {
         let unit = if body.body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
         let of = if body.name.is_empty() { "the body".to_owned() } else { quoted(&body.name) };
         let message = format!(
-            "{of} lies flat under its own weight in {}: ρ g h / E = {}, with a height h of {} m and E = {}",
+            "{of} is too soft to carry its own weight in {}: ρ g h / E = {}, with a height h of {} m and E = {}",
             list(&names, "and", quoted),
             rounded(*strain, 2),
             short(*height),
@@ -74,23 +80,23 @@ impl Scene {
             Some(typed) => format!("young = {:e}", rounded(times * typed.young, 2)),
             None => format!("stiffness = {:e}", rounded(times * model.stiffness(), 2)),
         };
-        Some((*run, [message, format!("with {firm} it sinks by a tenth of its height")]))
+        Some((*run, [message, format!("with {firm} the weight changes its height by a tenth")]))
     }
 
-    /// How soft a body at a place of a run is; `None` if it has no volume, or may fall for ever.
+    /// How soft a body with a volume (m³; m² in the plane) at a place of a run is; `None` without one, or if it may fall for ever.
     fn soft<'a>(
         &'a self,
         number: usize,
         place: usize,
         (model, body): (&'a dyn ElasticModel, &'a SceneBody),
+        volume: f64,
     ) -> Option<Soft<'a>> {
         let (run, up) = (&self.runs[number], -self.gravity.normalize_or_zero());
         let nodes = run.bodies.nodes(place);
         let is_gripped = run.grips.iter().any(|grip| grip.nodes.iter().any(|node| nodes.contains(&(*node as usize))));
-        if up == DVec3::ZERO || self.obstacles.is_empty() && !is_gripped {
+        if volume <= 0.0 || self.obstacles.is_empty() && !is_gripped {
             return None;
         }
-        let volume = Some(filled(&body.body)).filter(|&volume| volume > 0.0)?;
         let heights = run.initial.position[nodes].iter().map(|at| at.dot(up));
         let (low, high) =
             heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (at.min(low), at.max(high)));
@@ -99,12 +105,6 @@ impl Scene {
         let strain = density * self.gravity.length() * height / young;
         Some(Soft { run: number, body, model, height, young, strain })
     }
-}
-
-/// The volume of what is filled of the elements of a body at rest (m³; m² in the plane).
-fn filled(body: &Body) -> f64 {
-    let parts = |element| body.fill.as_ref().map_or(1.0, |fill| fill[element]);
-    volumes_at_rest(body).into_iter().enumerate().map(|(element, volume)| volume * parts(element)).sum()
 }
 
 /// Young's modulus of a model on a body with a volume: of its material, or else from its energy when the body is compressed a

@@ -257,7 +257,7 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[PathPart<'_>], report: &mut Co
 
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
-/// The most rows of `diagnostics.csv` between frames for each run: they stay in memory until its end.
+/// The most rows of `diagnostics.csv` between frames, of all runs and bodies: with charts or `--states` they stay in memory until the end.
 const MOST_ROWS: f64 = 1e6;
 
 /// The physics. A part is `None` if it has a mistake, or depends on a part with one.
@@ -286,6 +286,7 @@ fn resolve(
         let longest = fixed.fold(0.0, |longest: f64, run| longest.max(run.step));
         obstacles::check_steps(&parts.obstacles, longest, report);
         grips::check_steps(&parts.holds, &parts.grabs, longest, report);
+        parts.time.iter().for_each(|time| check_rows(time, runs, report));
     }
     if report.total() > 0 {
         return None;
@@ -314,7 +315,7 @@ fn resolve(
     warn_of_overlaps(&scene, &parts.places, report);
     warn_of_braked_rotation(&scene, report);
     warn_of_sizes(&scene, &parts, report);
-    if let Some((run, [message, help])) = scene.lies_flat() {
+    if let Some((run, [message, help])) = scene.too_soft() {
         report.warn(&key_path!["run", run, "model"], message, help);
     }
     Some(scene)
@@ -604,16 +605,25 @@ fn warn_of_sizes(scene: &Scene, parts: &SceneParts, report: &mut Collector<'_>) 
 
 fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {
     let TimeFile { duration, frames_per_second: rate, .. } = time;
-    let mut check = |number: f64, key: &str, made: &str, most: f64, help: &str| {
-        if number > most {
-            let message = format!("{duration} s {made} make {number:.3e} {key}; the most is {}", count(most as u128));
-            report.at(&key_path!["time", "duration"], message, help.to_owned());
-        }
-    };
-    let made = format!("at {rate} frames per second");
-    check(duration * rate, "frames", &made, MOST_FRAMES, "make `duration` or `frames_per_second` smaller");
-    if let Some(Positive(every)) = time.every {
-        let made = format!("with a row every {every} s");
-        check(duration / every, "rows", &made, MOST_ROWS, "make `duration` smaller, or `every` larger");
+    let number = duration * rate;
+    if number > MOST_FRAMES {
+        let most = count(MOST_FRAMES as u128);
+        let message = format!("{duration} s at {rate} frames per second make {number:.3e} frames; the most is {most}");
+        report.at(&key_path!["time", "duration"], message, "make `duration` or `frames_per_second` smaller");
+    }
+}
+
+/// Each step has one row at most for all bodies of a run, and one for each of several.
+fn check_rows(time: &TimeFile, runs: &[Run], report: &mut Collector<'_>) {
+    let (duration, Some(Positive(every))) = (time.duration, time.every) else { return };
+    let together = |run: &Run| if run.of.len() > 1 { 1.0 + run.of.len() as f64 } else { 1.0 };
+    let number: f64 = runs.iter().map(|run| together(run) * duration / every.max(run.step)).sum();
+    if number > MOST_ROWS {
+        let (most, all) = (count(MOST_ROWS as u128), runs.iter().map(together).sum::<f64>());
+        let message = format!(
+            "{duration} s with a row every {every} s make {number:.3e} rows of all runs and bodies; the most is {most}"
+        );
+        let help = format!("write every = {:.3e} or more, or make `duration` smaller", duration * all / MOST_ROWS);
+        report.at(&key_path!["time", "every"], message, help);
     }
 }
