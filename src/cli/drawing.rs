@@ -41,8 +41,6 @@ const MOST_WRITERS: usize = 4;
 /// The pictures of one scene.
 pub(super) struct Drawing<'a> {
     scene: &'a Scene,
-    /// The time series of the scene, until the first frame is composed.
-    history: History,
     composer: Option<Composer<'a>>,
     /// The last composed frame and its picture, if pictures depend on states only. Equal states are not composed again.
     still: Option<(Frame, Arc<Picture>)>,
@@ -96,7 +94,6 @@ impl<'a> Drawing<'a> {
         let writers = device.threads.min(MOST_WRITERS);
         Ok(Self {
             scene,
-            history: History::default(),
             composer: None,
             still: None,
             renderer: Renderer::new(device.gpu.as_ref(), scene.view.size)?,
@@ -116,13 +113,17 @@ impl<'a> Drawing<'a> {
         })
     }
 
+    /// Width and height of pictures (px), and pixels per inch for print.
+    fn resolution(&self) -> ([u32; 2], Option<f64>) {
+        (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi))
+    }
+
     /// The picture of a frame.
     fn compose(&mut self, frame: &Frame) -> Arc<Picture> {
         if let Some((_, picture)) = self.still.as_ref().filter(|(before, _)| have_same_states(before, frame)) {
             return Arc::clone(picture);
         }
-        let history = std::mem::take(&mut self.history);
-        let composer = self.composer.get_or_insert_with(|| Composer::new(self.scene, &history));
+        let composer = self.composer.get_or_insert_with(|| Composer::new(self.scene, &History::default()));
         let picture = Arc::new(composer.compose(frame));
         self.still = (!self.scene.shows_time()).then(|| (frame.clone(), Arc::clone(&picture)));
         picture
@@ -152,7 +153,7 @@ impl<'a> Drawing<'a> {
         };
         self.last = Some((picture, Arc::clone(&pixels)));
         self.draw_time += clock.spent();
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        let (size, dpi) = self.resolution();
         Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
     }
 
@@ -170,7 +171,7 @@ impl<'a> Drawing<'a> {
             Some((_, tags)) if tags.adapter != *own => {
                 format!("{name}, which an earlier build has drawn; draw all anew with --overwrite")
             }
-            _ => format!("{name}, which has been replaced since; restore it"),
+            _ => format!("{name}, which is damaged or has been replaced since; restore it"),
         })
     }
 
@@ -211,11 +212,11 @@ impl Pictures for Drawing<'_> {
     }
 
     fn take_history(&mut self, history: &History) {
-        self.history = history.clone();
+        self.composer = Some(Composer::new(self.scene, history));
     }
 
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        let (size, dpi) = self.resolution();
         let texts = Tags::of_frame(self.scene, frame, &self.adapter).texts();
         if let Some(folder) = &self.drawn_before {
             let path = folder.join(frame_file_name(frame.index));
@@ -246,7 +247,7 @@ impl Pictures for Drawing<'_> {
     fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure> {
         let Some(folder) = self.drawn_before.clone() else { return Ok(None) };
         let path = |frame: u64| folder.join(frame_file_name(frame));
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        let (size, dpi) = self.resolution();
         for &frame in frames {
             let texts = [
                 ("scene", self.scene.digest.clone()),

@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, Status, note, with_causes};
 use super::options::{PrintOptions, RunOptions};
-use super::results::{Pace, Pictures, Results, series};
+use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
 use super::{console, interrupt, report};
 use crate::output::export::Export;
@@ -159,17 +159,13 @@ impl<'a> Recording<'a> {
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
         let (folder, scene) = (self.folder.path(), self.scene);
-        if let (Some(found), Some(pictures)) = (&checkpoint, &mut pictures)
-            && let Some(wrong) = pictures.keep(self.frames.get(..found.progress.taken).unwrap_or_default())?
-        {
-            let what = format!("counts on {wrong}").into();
-            return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
-        }
-        if let Some(found) = &checkpoint
-            && let Some(wrong) = export.wrong(self.frames.get(..found.progress.taken).unwrap_or_default())?
-        {
-            let what = format!("counts on {wrong}").into();
-            return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
+        if let Some(found) = &checkpoint {
+            let taken = self.frames.get(..found.progress.taken).unwrap_or_default();
+            let wrong = pictures.as_mut().map_or(Ok(None), |pictures| pictures.keep(taken))?;
+            if let Some(wrong) = wrong.map_or_else(|| export.wrong(taken), |wrong| Ok(Some(wrong)))? {
+                let what = format!("counts on {wrong}").into();
+                return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
+            }
         }
         let (progress, rows, course) = match checkpoint {
             Some(Checkpoint { progress, causes, extremes, rows, course, .. }) => {
@@ -184,9 +180,7 @@ impl<'a> Recording<'a> {
         let diagnostics = match rows {
             _ if is_shard => None,
             Some(rows) => {
-                let taken = progress.as_ref().map_or(0, |progress| progress.taken);
-                let last = self.frames.get(..taken).and_then(<[_]>::last).copied();
-                let resumed = DiagnosticsWriter::resume(folder, scene, rows, last);
+                let resumed = DiagnosticsWriter::resume(folder, scene, rows);
                 Some(resumed.map_err(|error| self.unusable(&error))?)
             }
             None => Some(DiagnosticsWriter::create(folder, scene)?),
@@ -201,8 +195,7 @@ impl<'a> Recording<'a> {
         let keeps = options.states || options.write.iter().any(|format| format.is_of_course());
         let states = keeps.then(begin).transpose()?;
 
-        let mut results =
-            Results { diagnostics, states, export, pictures, history: None, warned: options.printing.quiet };
+        let mut results = Results { diagnostics, states, export, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
         let Results { diagnostics, mut states, export, pictures, .. } = results;
         if let Some(states) = &mut states {
@@ -293,8 +286,7 @@ impl<'a> Recording<'a> {
         };
         let is_drawn = pictures.is_some();
         let ahead = shown.is_some() && is_drawn;
-        let wanted = if scene.every.is_some() { Some(Diagnostic::ALL) } else { shown };
-        let noted = wanted.unwrap_or_default().to_vec();
+        let noted = shown.unwrap_or_default().to_vec();
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
@@ -309,8 +301,11 @@ impl<'a> Recording<'a> {
             if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
             }
-            if let Some(wanted) = wanted {
-                runner = runner.with_time_series(wanted);
+            if let Some(shown) = shown {
+                runner = runner.with_time_series(shown);
+            }
+            if !self.folder.is_shard() {
+                runner = runner.with_rows();
             }
             let before = progress.as_ref().and_then(Progress::waiting);
             let file = waiting_states(folder);
@@ -325,7 +320,7 @@ impl<'a> Recording<'a> {
             })?;
             let mut frames = Frames::new(runner, &self.frames, waiting);
             progress.map_or(Ok(()), |progress| frames.resume(progress)).map_err(|error| self.unusable(&error))?;
-            let notes = wanted.is_some() && !ahead && is_whole;
+            let notes = shown.is_some() && !ahead && is_whole;
             Ok(Simulation { frames, ahead, notes, noted, is_stored: false })
         })
     }
@@ -360,7 +355,7 @@ impl<'a> Recording<'a> {
             if can_resume && pace.is_due() {
                 pace.take(|| results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary))?;
             }
-            let Simulation { frames, notes, is_stored, .. } = simulation;
+            let Simulation { frames, notes, noted, is_stored, .. } = simulation;
             let clock = Clock::thread();
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
@@ -373,12 +368,17 @@ impl<'a> Recording<'a> {
             if let Next::Frame(_) = next {
                 bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
             }
-            results.take(&next, frames)?;
             match next {
-                Next::Working | Next::TimeSeries(_) => {}
+                Next::Working => {}
+                Next::TimeSeries(history) => {
+                    self.summary.note_series(noted, &history.series);
+                    results.take_history(history);
+                }
                 Next::Frame(frame) => {
+                    let between = frames.take_rows(&frame);
+                    results.take(&frame, &between, frames)?;
                     self.summary.frames.recorded += 1;
-                    self.summary.note(&frame);
+                    self.summary.note(&frame, &between);
                     if !*is_stored {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
@@ -388,7 +388,8 @@ impl<'a> Recording<'a> {
                 Next::Done => {
                     if *notes {
                         let history = frames.take_history();
-                        results.take(&Next::TimeSeries(history), frames)?;
+                        self.summary.note_series(noted, &history.series);
+                        results.take_history(history);
                     }
                     break;
                 }
@@ -402,7 +403,7 @@ impl<'a> Recording<'a> {
             tell_meetings(&mut simulation.frames);
         }
         let frames = &mut simulation.frames;
-        self.summary.note_series(&simulation.noted, series(results.history.as_ref(), frames));
+        self.summary.note_series(&simulation.noted, frames.series());
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {
             run.steps = steps;
         }

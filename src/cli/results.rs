@@ -4,7 +4,7 @@ use super::failure::{Failure, note, with_causes};
 use crate::output::export::Export;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
-use crate::runner::{Frames, Next, TimeSeries};
+use crate::runner::{Frames, Row};
 use crate::sim::{Diagnostic, Frame};
 use std::time::{Duration, Instant};
 
@@ -32,34 +32,28 @@ pub(super) struct Results<'a> {
     /// Files for other programs.
     pub(super) export: Export<'a>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
-    /// The time series of the scene, once they are complete.
-    pub(super) history: Option<History>,
     /// Whether the user has read that no checkpoint can be written, or wants no warnings.
     pub(super) warned: bool,
 }
 
 impl Results<'_> {
-    /// Takes the next result of the frames.
-    pub(super) fn take(&mut self, next: &Next, frames: &Frames<'_>) -> Result<(), Failure> {
-        let Self { diagnostics, states, export, pictures, history: known, .. } = self;
-        match next {
-            Next::TimeSeries(history) => {
-                *known = Some(history.clone());
-                pictures.iter_mut().for_each(|pictures| pictures.take_history(history));
-                states.iter_mut().for_each(|states| states.set_history(history));
-                Ok(())
-            }
-            Next::Frame(frame) => {
-                let series: Vec<_> = series(known.as_ref(), frames).collect();
-                diagnostics.iter_mut().try_for_each(|diagnostics| diagnostics.write(frame, &series))?;
-                if let Some(states) = states {
-                    states.write(frame, frames.states())?;
-                }
-                export.write(frame)?;
-                pictures.as_deref_mut().map_or(Ok(()), |pictures| pictures.draw(frame))
-            }
-            Next::Working | Next::Done => Ok(()),
+    /// Takes the time series of the scene, which are complete.
+    pub(super) fn take_history(&mut self, history: History) {
+        self.pictures.iter_mut().for_each(|pictures| pictures.take_history(&history));
+        if let Some(states) = &mut self.states {
+            states.set_history(history);
         }
+    }
+
+    /// Takes a frame with its states, and the rows of each run before it.
+    pub(super) fn take(&mut self, frame: &Frame, between: &[Vec<Row>], frames: &Frames<'_>) -> Result<(), Failure> {
+        let Self { diagnostics, states, export, pictures, .. } = self;
+        diagnostics.iter_mut().try_for_each(|diagnostics| diagnostics.write(frame, between))?;
+        if let Some(states) = states {
+            states.write(frame, between, frames.states())?;
+        }
+        export.write(frame)?;
+        pictures.as_deref_mut().map_or(Ok(()), |pictures| pictures.draw(frame))
     }
 
     /// Writes a checkpoint unless the simulation is finished. With `ahead`, it is finished before the first frame.
@@ -98,17 +92,6 @@ impl Results<'_> {
             note(&format!("no checkpoint is written: {}", with_causes(error)));
         }
         Ok(())
-    }
-}
-
-/// The time series of the scene: all, if they are `known`, or those of the `frames` so far.
-pub(super) fn series<'s>(
-    known: Option<&'s History>,
-    frames: &'s Frames<'_>,
-) -> Box<dyn Iterator<Item = &'s TimeSeries> + 's> {
-    match known {
-        Some(known) => Box::new(known.series.iter()),
-        None => Box::new(frames.series()),
     }
 }
 

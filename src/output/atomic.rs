@@ -33,7 +33,8 @@ impl AtomicFile {
         Ok(Self { path: path.to_owned(), temporary })
     }
 
-    /// Creates the file, after removing what killed processes have left of it.
+    /// Creates the file, after removing what killed processes have left of it. A process that has created its file for the same
+    /// path, and not locked it yet, loses it too: it then fails to rename it, and the path keeps what it has.
     #[cfg(feature = "render")]
     pub(crate) fn create_anew(path: &Path) -> Result<Self, OutputError> {
         let (folder, prefix) = (folder_of(path), prefix(path));

@@ -3,7 +3,7 @@
 
 use super::atomic::remove;
 use super::{OutputError, exact, rows_as_csv};
-use crate::runner::TimeSeries;
+use crate::runner::Row;
 use crate::runner::growing::{Growing, Grown};
 use crate::scene::{ALL_BODIES, Scene};
 use crate::sim::{Diagnostic, Diagnostics, Frame, RunFrame, Status, Value};
@@ -24,8 +24,6 @@ pub(crate) struct DiagnosticsWriter<'a> {
     file: Growing,
     hidden: PathBuf,
     pub(super) path: PathBuf,
-    /// The last written frame.
-    last: Option<u64>,
 }
 
 impl<'a> DiagnosticsWriter<'a> {
@@ -33,20 +31,15 @@ impl<'a> DiagnosticsWriter<'a> {
     pub(crate) fn create(folder: &Path, scene: &'a Scene) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         let file = Growing::open(&hidden, None).map_err(OutputError::writing(&path))?;
-        let mut writer = Self { scene, file, hidden, path, last: None };
+        let mut writer = Self { scene, file, hidden, path };
         let heads = cells(["", ALL_BODIES], None, 0.0, Status::Ok, &Diagnostics::default());
         let heads = heads.into_iter().map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
     }
 
-    /// Continues after the rows of another process up to its frame `last`, whether it has finished the file or not.
-    pub(crate) fn resume(
-        folder: &Path,
-        scene: &'a Scene,
-        before: Grown,
-        last: Option<u64>,
-    ) -> Result<Self, OutputError> {
+    /// Continues after the rows of another process, whether it has finished the file or not.
+    pub(crate) fn resume(folder: &Path, scene: &'a Scene, before: Grown) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         // A finished file has lost its hidden name.
         let is_finished = !hidden.exists();
@@ -54,7 +47,7 @@ impl<'a> DiagnosticsWriter<'a> {
             fs::copy(&path, &hidden).map_err(OutputError::reading(&path))?;
         }
         match Growing::open(&hidden, Some(before)) {
-            Ok(file) => Ok(Self { scene, file, hidden, path, last }),
+            Ok(file) => Ok(Self { scene, file, hidden, path }),
             Err(error) if is_finished => {
                 // The user may restore the finished file.
                 remove(&hidden)?;
@@ -64,33 +57,27 @@ impl<'a> DiagnosticsWriter<'a> {
         }
     }
 
-    /// Appends the rows of one frame: for each run in it one on all its bodies, then one on each if it has several. If the
-    /// scene asks for rows between frames, those since the last frame come before, from the time `series` of the runs.
+    /// Appends the rows of one frame: for each run in it one on all its bodies, then one on each if it has several. The rows
+    /// of each run since the last frame come before, if there are any.
     ///
     /// # Errors
     /// If they cannot be written; rows written before stay.
-    pub(crate) fn write(&mut self, frame: &Frame, series: &[&TimeSeries]) -> Result<(), OutputError> {
+    pub(crate) fn write(&mut self, frame: &Frame, between: &[Vec<Row>]) -> Result<(), OutputError> {
         let mut rows = Vec::new();
-        for RunFrame { run: at, snapshot, .. } in &frame.runs {
-            let run = &self.scene.runs[*at];
+        for (place, RunFrame { run, snapshot, .. }) in frame.runs.iter().enumerate() {
+            let run = &self.scene.runs[*run];
             let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
-            let mut add = |frame, time, status, all, of_bodies: Vec<&Diagnostics>| {
+            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics]| {
                 let all = std::iter::once((ALL_BODIES, all)).chain(bodies.iter().copied().zip(of_bodies));
                 rows.extend(all.map(|(body, one)| cells([&run.name, body], frame, time, status, one)));
             };
-            if let (Some(last), Some(series)) = (self.last, series.iter().find(|series| series.run == *at)) {
-                let after = self.scene.frame_step(*at, last) as f64 * run.step;
-                let places = [after, snapshot.time].map(|end| series.times.partition_point(|time| *time <= end));
-                let times = (places[0]..places[1]).map(|place| (place, series.times[place]));
-                for (place, time) in times.filter(|&(_, time)| time < snapshot.time && self.scene.has_row(*at, time)) {
-                    let of_bodies = series.of_bodies.iter().map(|body| &body[place]);
-                    add(None, time, Status::Ok, &series.diagnostics[place], of_bodies.collect());
-                }
+            // The step of a frame has the row of the frame.
+            let between = between.get(place).into_iter().flatten().filter(|row| row.time < snapshot.time);
+            for Row { time, all, of_bodies } in between {
+                add(None, *time, Status::Ok, all, of_bodies);
             }
-            let of_bodies = snapshot.of_bodies.iter().collect();
-            add(Some(frame.index), snapshot.time, snapshot.status, &snapshot.diagnostics, of_bodies);
+            add(Some(frame.index), snapshot.time, snapshot.status, &snapshot.diagnostics, &snapshot.of_bodies);
         }
-        self.last = Some(frame.index);
         self.append(&rows_as_csv(rows.into_iter().map(|row| row.into_iter().map(|(_, cell)| cell))))
     }
 

@@ -100,19 +100,20 @@ fn image_chunks(file: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// Whether a file is the picture that would be written with this size (px), these texts and this resolution (px per
-/// inch); `false` if there is no such file.
+/// inch), and all its checksums are right; `false` if there is no such file.
 pub(crate) fn is_drawn(
     path: &Path,
     size: [u32; 2],
     texts: &[(&'static str, String)],
     dpi: Option<f64>,
 ) -> Result<bool, OutputError> {
-    let Some(reader) = header(path)? else { return Ok(false) };
+    let Some(mut reader) = header(path)? else { return Ok(false) };
+    let is_whole = reader.finish().is_ok();
     let info = reader.info();
     let has = |(name, text): &(&'static str, String)| texts_of(info, name) == [Some(text.clone())];
     let of_metre = |dims: png::PixelDimensions| dims.xppu;
     let is_for_print = info.pixel_dims.map(of_metre) == dpi.map(pixel_dims).map(of_metre);
-    Ok([info.width, info.height] == size && is_for_print && texts.iter().all(has))
+    Ok(is_whole && [info.width, info.height] == size && is_for_print && texts.iter().all(has))
 }
 
 #[cfg(test)]
@@ -128,6 +129,26 @@ mod tests {
         for dpi in [None, Some(300.0)] {
             let again = encode_like((&before, pixels.len()), size, &later, dpi);
             assert!(again == encode_print(size, &pixels, &later, Compression::Fast, dpi), "{dpi:?}");
+        }
+    }
+
+    #[test]
+    fn a_picture_with_one_wrong_bit_or_a_lost_end_is_not_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frame.png");
+        let (size, texts) = ([20, 10], [("frame", "8".to_owned()), ("adapter", "Ω".to_owned())]);
+        let pixels: Vec<u8> = (0..20 * 10 * 3).map(|at: u32| (at * at / 7) as u8).collect();
+        let file = encode_print(size, &pixels, &texts, Compression::Fast, Some(300.0));
+        let is_kept = |bytes: &[u8]| {
+            fs::write(&path, bytes).unwrap();
+            is_drawn(&path, size, &texts, Some(300.0)).unwrap()
+        };
+        assert!(is_kept(&file));
+        for at in 0..file.len() {
+            let mut damaged = file.clone();
+            damaged[at] ^= 1 << (at % 8);
+            assert!(!is_kept(&damaged), "byte {at} of {}", file.len());
+            assert!(!is_kept(&file[..at]), "{at} of {} bytes", file.len());
         }
     }
 }

@@ -227,14 +227,17 @@ pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
     Ok(info.and_then(|info| Some(([info.width, info.height], Tags::of(info).ok()??))))
 }
 
-/// A reader after the header of a picture; `None` if there is no PNG file at the path.
+/// A reader after the header of a picture, which compares all checksums; `None` if there is no sound PNG file at the path.
 pub(super) fn header(path: &Path) -> Result<Option<png::Reader<BufReader<File>>>, OutputError> {
     // Opening a pipe would block.
     if !path.is_file() {
         return Ok(None);
     }
     let file = File::open(path).map_err(OutputError::reading(path))?;
-    match png::Decoder::new(BufReader::new(file)).read_info() {
+    // A damaged text must not count as a missing one.
+    let mut options = png::DecodeOptions::default();
+    options.set_skip_ancillary_crc_failures(false);
+    match png::Decoder::new_with_options(BufReader::new(file), options).read_info() {
         Ok(reader) => Ok(Some(reader)),
         Err(png::DecodingError::IoError(error)) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
             Err(OutputError::reading(path)(error))

@@ -2,13 +2,14 @@
 
 use super::{AtomicFile, OutputError};
 use crate::runner::growing::{Growing, Grown};
-use crate::runner::history::History;
+use crate::runner::history::{History, Row};
 use crate::scene::npy::begin;
 use crate::scene::{COURSE, Course, Origin, Run, Scene, SceneBody, StoredRun};
 use crate::sim::{Assembly, Frame, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, VecDeque};
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::ops::Range;
@@ -63,6 +64,8 @@ pub(crate) struct Written {
     course: Course,
     /// The time series of the scene, if its pictures need them and it was simulated to its end.
     history: Option<History>,
+    /// The rows between frames of each run, by its number in the scene.
+    rows: BTreeMap<usize, VecDeque<Row>>,
 }
 
 /// The bodies of a run.
@@ -152,20 +155,21 @@ impl StatesWriter {
                 (before, Growing::open(&hidden, Some(grown)).map_err(OutputError::reading(&hidden))?)
             }
             None => {
-                let written = Written { course: Course { runs: stored, ..Course::default() }, history: None };
+                let written = Written { course: Course { runs: stored, ..Course::default() }, ..Written::default() };
                 (written, Growing::open(&hidden, None).map_err(OutputError::writing(&path))?)
             }
         };
         Ok(Self { path, spool, names, meshes, arrays, record, own_time, steps, origin, written })
     }
 
-    /// Appends one frame, with the state of each run in it.
+    /// Appends one frame, with the rows of each run before it and the state of each in it.
     ///
     /// # Errors
     /// If it cannot be written; frames written before are kept.
     pub(crate) fn write<'s>(
         &mut self,
         frame: &Frame,
+        between: &[Vec<Row>],
         states: impl Iterator<Item = &'s State>,
     ) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
@@ -191,6 +195,9 @@ impl StatesWriter {
         assert_eq!(record.len() as u64, self.record, "every frame shows the runs that the file was begun for");
         self.spool.append(&record).map_err(OutputError::writing(&self.path))?;
         course.frames.push(frame.index);
+        for (run, rows) in frame.runs.iter().zip(between) {
+            self.written.rows.entry(run.run).or_default().extend(rows.iter().cloned());
+        }
         Ok(())
     }
 
@@ -225,8 +232,8 @@ impl StatesWriter {
     }
 
     /// Adds the time series of the scene.
-    pub(crate) fn set_history(&mut self, history: &History) {
-        self.written.history = Some(history.clone());
+    pub(crate) fn set_history(&mut self, history: History) {
+        self.written.history = Some(history);
     }
 
     /// Makes the frames written so far survive a power failure.

@@ -1,8 +1,8 @@
 //! `run.json`: the command, its files and its outcome.
 
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
-use crate::runner::TimeSeries;
 use crate::runner::cause::Cause;
+use crate::runner::{Row, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Frame, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
@@ -236,8 +236,11 @@ impl Summary {
         }
     }
 
-    /// Records the values of a frame.
-    pub(crate) fn note(&mut self, frame: &Frame) {
+    /// Records the values of a frame, and of the rows of each run before it.
+    pub(crate) fn note(&mut self, frame: &Frame, between: &[Vec<Row>]) {
+        for (summary, rows) in self.runs.iter_mut().zip(between) {
+            rows.iter().for_each(|row| summary.extremes.note(Diagnostic::ALL, row.time, &row.all));
+        }
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
             let Snapshot { time, status, diagnostics, .. } = &run.snapshot;
             let time = match status {
@@ -250,7 +253,7 @@ impl Summary {
     }
 
     /// Records the values of some diagnostics in time series.
-    pub(crate) fn note_series<'s>(&mut self, wanted: &[Diagnostic], series: impl Iterator<Item = &'s TimeSeries>) {
+    pub(crate) fn note_series<'s>(&mut self, wanted: &[Diagnostic], series: impl IntoIterator<Item = &'s TimeSeries>) {
         for (summary, series) in self.runs.iter_mut().zip(series) {
             let moments = series.times.iter().zip(&series.diagnostics);
             moments.for_each(|(&time, all)| summary.extremes.note(wanted, time, all));

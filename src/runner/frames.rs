@@ -3,10 +3,11 @@
 
 use super::growing::{Growing, Grown};
 use super::last_fit::Fitting;
-use super::{History, Runner, Running, Stored, TimeSeries};
-use crate::sim::{Frame, State};
+use super::{History, Row, Runner, Running, Stored, TimeSeries};
+use crate::sim::{Frame, RunFrame, State};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
 
@@ -31,6 +32,8 @@ pub(crate) struct Progress {
     states: Vec<Vec<u8>>,
     /// The time series so far.
     history: History,
+    /// The rows between frames of each run that are not taken yet.
+    rows: Vec<Option<VecDeque<Row>>>,
     /// The results of [`Frames::last_fit`] for each run, with states as bytes.
     last_fits: Vec<Option<StoredFit>>,
     /// Whether the bodies of each run need not be watched any more.
@@ -115,11 +118,12 @@ impl<'a> Frames<'a> {
         let states = states.collect();
         let series = runner.runs.iter().map(|running| running.series.clone()).collect();
         let history = History { end: 0.0, series };
+        let rows = runner.runs.iter().map(|running| running.rows.clone()).collect();
         let met = runner.runs.iter().map(|running| running.watch.is_none()).collect();
         let (taken, runs) = (*taken, 0..runner.runs.len());
         let last_fit = |place| Some(self.last_fit(place)?.map(|(state, wider)| (state.to_bytes(), wider)));
         let last_fits = runs.map(last_fit).collect();
-        Ok(Some(Progress { states, history, last_fits, met, taken, waiting }))
+        Ok(Some(Progress { states, history, rows, last_fits, met, taken, waiting }))
     }
 
     /// Continues from the progress of another process with the same runs and frames, before the first call of
@@ -129,7 +133,7 @@ impl<'a> Frames<'a> {
     /// The progress belongs to other runs or frames.
     pub(crate) fn resume(&mut self, progress: Progress) -> io::Result<()> {
         let Self { runner, frames, taken, source, .. } = self;
-        let Progress { states, history, last_fits, met, taken: returned, waiting } = progress;
+        let Progress { states, history, rows, last_fits, met, taken: returned, waiting } = progress;
         let runs = runner.runs.len();
         let reached = match (source, waiting) {
             (Source::Simulated, None) => Some(returned),
@@ -145,15 +149,15 @@ impl<'a> Frames<'a> {
         let end = runner.scene.last_frame();
         // The next frame and the next moment of a time series must lie ahead.
         let next = runner.scene.moment(frames.get(reached).copied().unwrap_or(end));
-        let fit = [states.len(), history.series.len(), last_fits.len(), met.len()] == [runs; 4];
+        let fit = [states.len(), history.series.len(), rows.len(), last_fits.len(), met.len()] == [runs; 5];
         if !fit || !history.series.iter().zip(&runner.runs).all(|(series, running)| series.fits(&running.series)) {
             return Err(io::ErrorKind::InvalidData.into());
         }
-        let found = runner.runs.iter_mut().zip(states).zip(history.series).zip(last_fits).zip(met);
-        for ((((running, state), series), last_fit), met) in found {
+        let found = runner.runs.iter_mut().zip(states).zip(history.series).zip(rows).zip(last_fits).zip(met);
+        for (((((running, state), series), rows), last_fit), met) in found {
             let state = State::from_bytes(&state).filter(|state| running.world.takes(state));
             running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
-            running.series = series;
+            (running.series, running.rows) = (series, rows);
             running.watch = running.watch.take().filter(|_| !met);
             running.watch.iter_mut().for_each(|watch| watch.goes_on(&running.world));
             if let Some(found) = last_fit {
@@ -179,7 +183,9 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// The stored states do not belong to these runs.
     pub(crate) fn stored(runner: Runner<'a>, frames: &[u64], stored: Stored) -> io::Result<Self> {
-        let runner = runner.playing(&stored.recordings).ok_or(io::ErrorKind::InvalidData)?;
+        let mut runner = runner.playing(&stored.recordings).ok_or(io::ErrorKind::InvalidData)?;
+        let mut rows = stored.rows;
+        runner.runs.iter_mut().for_each(|running| running.rows = rows.remove(&running.run));
         Ok(Self { known: stored.history, ..Self::new(runner, frames, None) })
     }
 
@@ -285,6 +291,18 @@ impl<'a> Frames<'a> {
     /// The time series so far, empty once they were returned.
     pub(crate) fn series(&self) -> impl Iterator<Item = &TimeSeries> {
         self.runner.runs.iter().map(|running| &running.series)
+    }
+
+    /// The rows of each run after the last frame, to the step of this one, which was returned; none before the first frame.
+    pub(crate) fn take_rows(&mut self, frame: &Frame) -> Vec<Vec<Row>> {
+        let is_first = self.taken == 1;
+        let of_run = |(running, run): (&mut Running, &RunFrame)| {
+            let (time, rows) = (run.snapshot.time, running.rows.get_or_insert_default());
+            let later = rows.split_off(rows.partition_point(|row| row.time <= time));
+            let until = std::mem::replace(rows, later);
+            if is_first { Vec::new() } else { until.into() }
+        };
+        self.runner.runs.iter_mut().zip(&frame.runs).map(of_run).collect()
     }
 
     /// The time series so far, unless they were returned.

@@ -87,6 +87,15 @@ impl TimeSeries {
     }
 }
 
+/// A row of `diagnostics.csv` between frames: the diagnostics of all bodies of a run together, and of each if it has several.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Row {
+    /// The time of the step (s).
+    pub(crate) time: f64,
+    pub(crate) all: Diagnostics,
+    pub(crate) of_bodies: Vec<Diagnostics>,
+}
+
 /// For each obstacle of a scene the box around all nodes that have been near it (m), relative to the obstacle at the
 /// start; `None` for all but plates and walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -134,7 +143,7 @@ impl NearObstacles {
 
 /// The moments of the time series of a run, rising: all frames with moments between them, or evenly chosen frames. The
 /// beginning of the scene and the interval `closer` (s) each have as many moments as the whole scene usually has; the steps
-/// nearest to each of `shown` (s), and to rows of `diagnostics.csv` between frames, are added.
+/// nearest to each of `shown` (s) are added.
 pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, shown: &[f64]) -> Vec<Moment> {
     let last = scene.last_frame();
     let rate = scene.frames_per_second;
@@ -153,9 +162,7 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
     let closely = std::iter::once(early).chain(closer).flat_map(|[start, end]| {
         (0..=FEWEST_MOMENTS).map(move |at| start + (end - start) * at as f64 / FEWEST_MOMENTS as f64)
     });
-    let rows = scene.every.map_or(0, |every| 1 + (scene.duration / every) as u64);
-    let rows = (0..rows).filter_map(|number| scene.row_moment(number));
-    let more = closely.chain(shown.iter().copied()).map(Moment::at).chain(rows);
+    let more = closely.chain(shown.iter().copied()).map(Moment::at);
     moments.extend(more.map(|moment| if world.steps_at(moment) > end { scene.moment(last) } else { moment }));
     moments.sort_by_key(|&moment| world.steps_at(moment));
     moments.dedup_by_key(|moment| world.steps_at(*moment));
@@ -224,6 +231,23 @@ mod tests {
             assert_eq!(format!("{:?}", runner.take_history()), whole);
         }
         assert_eq!(History::new(&scene, &[1]).series[0].run, 1);
+    }
+
+    #[test]
+    fn rows_between_frames_change_no_picture() {
+        let record = |rate: &str| {
+            let scene = scene("0.1", rate, "T/70");
+            let mut runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL).with_rows();
+            runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
+            (format!("{:?}", runner.take_history()), runner.runs[0].rows.take().map(|rows| rows.len()))
+        };
+        let [(usual, none), (same, rows)] = ["20", "20, every = 1e-6"].map(record);
+        assert_eq!(
+            (none, rows),
+            (None, Some(scene("0.1", "20", "T/70").frame_step(0, 2) as usize)),
+            "each step has one"
+        );
+        assert_eq!(usual, same);
     }
 
     #[test]

@@ -13,13 +13,16 @@ mod stored;
 use crate::look::Traced;
 use crate::scene::{Recorded, Scene};
 use crate::sim::{
-    Body, Crew, Diagnostic, Frame, Integrator, Moment, RunFrame, State, Status, Stepping, Surroundings, World,
+    Body, Crew, Diagnostic, Diagnostics, Frame, Integrator, Moment, RunFrame, State, Status, Stepping, Surroundings,
+    World,
 };
 pub(crate) use frames::{Frames, Next, Progress};
+pub(crate) use history::Row;
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};
 use meetings::Watch;
 use rayon::prelude::*;
+use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -47,6 +50,8 @@ struct Running {
     traced: Vec<Traced>,
     body: Arc<Body>,
     series: TimeSeries,
+    /// Its rows between frames, until they are taken; `None` if nobody wants them.
+    rows: Option<VecDeque<Row>>,
     /// The threads within the run.
     threads: usize,
     /// Whether the run is drawn.
@@ -91,6 +96,7 @@ impl<'a> Runner<'a> {
                 traced: Vec::new(),
                 body: Arc::clone(body),
                 series: TimeSeries::new(run),
+                rows: None,
                 threads,
                 is_drawn: true,
                 recording: None,
@@ -176,6 +182,13 @@ impl<'a> Runner<'a> {
             running.series.of_bodies = vec![Vec::new(); if bodies > 1 && !wanted.is_empty() { bodies } else { 0 }];
             running.notes = history::moments(self.scene, &running.world, closer, shown);
         }
+        self
+    }
+
+    /// Records the rows of `diagnostics.csv` between frames, if the scene asks for them; see [`Frames::take_rows`].
+    pub(crate) fn with_rows(mut self) -> Self {
+        let is_asked = self.scene.every.is_some();
+        self.runs.iter_mut().for_each(|running| running.rows = is_asked.then(VecDeque::new));
         self
     }
 
@@ -302,27 +315,50 @@ impl Running {
         // Recorded states take no steps.
         let most_steps = if self.recording.is_some() { u64::MAX } else { most_steps };
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
-        while let (Some(&note), None) = (self.notes.get(self.series.times.len()), self.series.divergence) {
-            if self.world.steps_at(note) > target {
-                break;
-            }
+        while let Some(next) = self.next_note(scene).filter(|next| self.world.steps_at(*next) <= target) {
             let before = self.world.steps();
-            let is_there = self.walk(scene, note, left);
+            let is_there = self.walk(scene, next, left);
             if let Status::Diverged(divergence) = self.world.status() {
                 // The last finite state is that before the rejected step.
                 let (last, noted) = (divergence.step - 1, self.series.times.len());
-                if noted == 0 || last > self.world.steps_at(self.notes[noted - 1]) {
-                    self.note(scene, last);
+                if !self.notes.is_empty() && (noted == 0 || last > self.world.steps_at(self.notes[noted - 1])) {
+                    let diagnostics = self.world.diagnostics_by_body(&self.wanted);
+                    self.note(scene, last, diagnostics);
                 }
                 self.series.divergence = Some(divergence);
             } else if is_there {
                 left -= self.world.steps() - before;
-                self.note(scene, self.world.steps());
+                self.note_all(scene, before);
             } else {
                 return false;
             }
         }
         self.walk(scene, moment, left)
+    }
+
+    /// The moment of the next note or row; `None` after a divergence.
+    fn next_note(&self, scene: &Scene) -> Option<Moment> {
+        let note = self.notes.get(self.series.times.len()).copied();
+        let row = self.rows.as_ref().and_then(|_| scene.next_row(self.run, self.world.steps()));
+        let next = note.into_iter().chain(row).min_by_key(|&next| self.world.steps_at(next));
+        next.filter(|_| self.series.divergence.is_none())
+    }
+
+    /// Records the present state for pictures, as a row, or both. The steps `before` were recorded.
+    fn note_all(&mut self, scene: &Scene, before: u64) {
+        let Self { run, world, notes, rows, wanted, series, .. } = self;
+        let (steps, run) = (world.steps(), *run);
+        let is_now = |moment: Option<Moment>| moment.is_some_and(|moment| world.steps_at(moment) == steps);
+        let row = rows.as_mut().filter(|_| steps > before && is_now(scene.next_row(run, before)));
+        let is_noted = is_now(notes.get(series.times.len()).copied());
+        let (all, of_bodies) = world.diagnostics_by_body(if row.is_some() { Diagnostic::ALL } else { wanted });
+        if let Some(rows) = row {
+            let time = steps as f64 * self.step;
+            rows.push_back(Row { time, all, of_bodies: of_bodies.clone() });
+        }
+        if is_noted {
+            self.note(scene, steps, (all, of_bodies));
+        }
     }
 
     /// Advances as [`World::advance_towards`] does, and watches the bodies.
@@ -349,9 +385,8 @@ impl Running {
         }
     }
 
-    /// Records the present state after a step.
-    fn note(&mut self, scene: &Scene, step: u64) {
-        let diagnostics = self.world.diagnostics_by_body(&self.wanted);
+    /// Records the present state after a step for pictures, with its diagnostics.
+    fn note(&mut self, scene: &Scene, step: u64, diagnostics: (Diagnostics, Vec<Diagnostics>)) {
         let position = &self.world.state().position;
         self.series.note(scene, step as f64 * self.step, diagnostics, position);
         for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {

@@ -349,16 +349,14 @@ impl Scene {
         Moment { count: frame as f64, rate: self.frames_per_second }
     }
 
-    /// The moment of a row of `diagnostics.csv`, by its number; `None` if there are only rows of frames.
-    pub(crate) fn row_moment(&self, number: u64) -> Option<Moment> {
-        Some(Moment::at(number as f64 * self.every?))
-    }
-
-    /// Whether a step of a run, with its time (s), is that of such a moment.
-    pub(crate) fn has_row(&self, run: usize, time: f64) -> bool {
+    /// The moment of the first row of `diagnostics.csv` after some steps of a run; `None` if there are only rows of frames.
+    pub(crate) fn next_row(&self, run: usize, steps: u64) -> Option<Moment> {
         let step = self.runs[run].step;
-        let nearest = self.every.and_then(|every| self.row_moment((time / every).round() as u64));
-        nearest.is_some_and(|moment| moment.step(step) == Moment::at(time).step(step))
+        let every = self.every?.max(step);
+        let row = |number: u64| Moment::at(number as f64 * every);
+        // Of the first number with a later step, round-off may be on either side.
+        let near = ((steps as f64 + 0.5) * step / every) as u64;
+        (near..).map(row).find(|moment| moment.step(step) > steps)
     }
 
     /// The step of a run that a frame shows: `round(n / (frames_per_second · ΔT))`.

@@ -160,6 +160,15 @@ fn frames_of_stored_states_are_those_of_a_simulation() {
         };
         assert_eq!(summary("stored"), summary("direct"));
     }
+    // Rows between frames are in the file, also of the steps of frames that are left out.
+    place.write("rows.toml", &SMALL.replace("frames_per_second", "every = 1e-6\nframes_per_second"));
+    place.run("simulate rows.toml --states -o rows").good();
+    place.run("simulate rows.toml --frames 1,4 -o direct --overwrite").good();
+    place.run("render rows.toml --frames 1,4 --from-states rows/states.npz -o stored --overwrite").good();
+    assert!(place.read("direct/diagnostics.csv") == place.read("stored/diagnostics.csv"));
+    let extremes =
+        |folder: &str, end: &str| place.json(&format!("{folder}/run.json"))["runs"][0][end]["momentum"].clone();
+    assert_eq!(extremes("direct", "greatest"), extremes("stored", "greatest"));
     // The wild run is one that diverges.
     place.run("render rich.toml --from-states states/states.npz --frames 60 -o last").too_large_steps();
     assert_eq!(place.json("last/run.json")["runs"][2]["status"], "diverged");

@@ -206,7 +206,10 @@ fn without_its_frames_a_checkpoint_is_refused() {
     refused(&["the checkpoint in out counts on frame_00002.png, which is missing; restore it", way_out]);
     assert!(files(&place, "out") == before, "nothing is lost");
     std::fs::copy(&other, &frame).unwrap();
-    refused(&["the checkpoint in out counts on frame_00002.png, which has been replaced since; restore it", way_out]);
+    refused(&[
+        "the checkpoint in out counts on frame_00002.png, which is damaged or has been replaced since; restore it",
+        way_out,
+    ]);
     let (size, tags) = localshape::internals::read_tags(&other).unwrap().expect("a frame of ours");
     let drawn = std::fs::read(&other).unwrap();
     let tags = localshape::internals::Tags { adapter: "Another one".to_owned(), ..tags };
@@ -289,6 +292,15 @@ fn animations_go_on_too() {
         let ran = stopped(&place, &typed, &format!("{folder}/frame_00036.png"), "INT");
         assert!(ran.status == Some(130) && ran.out.contains("to go on: "), "{ran:?}");
         assert!(place.path("out").join(CHECKPOINT).exists());
+        // One wrong bit among the pixels of a frame that is kept.
+        let kept = place.path(format!("{folder}/frame_00012.png"));
+        let bytes = std::fs::read(&kept).unwrap();
+        let mut damaged = bytes.clone();
+        damaged[bytes.len() - 40] ^= 4;
+        std::fs::write(&kept, damaged).unwrap();
+        let words = "the checkpoint in out counts on frame_00012.png, which is damaged or has been replaced since";
+        place.run(&format!("{typed} --resume")).bad(2, &[words]);
+        std::fs::write(&kept, bytes).unwrap();
         place.run(&format!("{typed} --resume")).good();
         // The command differs by more than `--resume`.
         whole.run(&typed).good();

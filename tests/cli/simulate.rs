@@ -626,8 +626,28 @@ fn rows_between_frames() {
     assert!(
         times.len() == near.len() && times.iter().zip(near).all(|(time, near)| (time - near).abs() <= 0.5001 * step)
     );
-    place.write("rows.toml", &SMALL.replace("frames_per_second", "every = 1e-8\nframes_per_second"));
-    place.run("check rows.toml").bad(2, &["rows.toml:5:12: ", "0.1 s with a row every 0.00000001 s make 1.000e7 rows"]);
+    // Two runs of one body, with a row for each step of 1 ms at most.
+    let long =
+        |every: &str| SMALL.replace("frames_per_second", &format!("every = {every}\nstep = 1e-3\nframes_per_second"));
+    let long = |every: &str| {
+        let rows = SMALL.replace("step = \"T/50\"", &format!("step = 1e-3\nevery = {every}"));
+        rows.replace("duration = 0.1", "duration = 1000")
+    };
+    for every in ["1e-8", "1.999e-3"] {
+        place.write("rows.toml", &long(every));
+        let ran = place.run("check rows.toml");
+        ran.bad(
+            2,
+            &[
+                "rows.toml:7:9: ",
+                "rows of all runs and bodies; the most is 1 000 000",
+                "write every = 2.000e-3 or more",
+            ],
+        );
+        assert_eq!(ran.err.contains("make 2.000e6 rows"), every == "1e-8", "{}", ran.err);
+    }
+    place.write("rows.toml", &long("2e-3"));
+    assert_ne!(place.run("check rows.toml").status, Some(2));
 }
 
 /// Rows of each of several bodies, up to the last finite state of a run that diverges.
