@@ -4,6 +4,7 @@
 //! them, in the same way for all formats. Numbers in a file are never trusted: lists grow as their entries are found.
 
 mod abaqus;
+mod arrays;
 mod cells;
 mod content;
 mod copies;

@@ -17,8 +17,6 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// Sets of points with a name.
     pub groups: Vec<Group>,
-    /// The number of points of the file without coordinates, which no triangle used and which were left out.
-    pub lost: usize,
     /// What is left out of the file or not read, each as the predicate of a sentence about it.
     pub notes: Vec<String>,
 }
@@ -30,8 +28,6 @@ pub struct Flaws {
     pub welded: usize,
     /// Those of them that are not at exactly the same place.
     pub near: usize,
-    /// Points without coordinates, which were left out.
-    pub lost: usize,
     /// Triangles without area, or with a corner that has no place, which were left out. Those without area that keep a
     /// surface closed stay.
     pub degenerate: usize,
@@ -207,7 +203,6 @@ impl Surface {
             flaws.welded += 1;
             flaws.near += usize::from(self.points[first[point as usize] as usize] != self.points[point as usize]);
         }
-        flaws.lost = self.lost;
         let mut triangles = Vec::with_capacity(self.triangles.len());
         for triangle in &self.triangles {
             if triangle.iter().all(is_place) {
@@ -219,7 +214,7 @@ impl Surface {
         }
         flaws.degenerate = self.triangles.len() - triangles.len();
         let groups = self.groups.iter().map(|group| group.renamed(&first)).collect();
-        Self { points: self.points.clone(), triangles, groups, lost: 0, notes: self.notes.clone() }.compact()
+        Self { points: self.points.clone(), triangles, groups, notes: self.notes.clone() }.compact()
     }
 
     /// The surface with those points only that belong to a triangle, in the same order.

@@ -1,5 +1,6 @@
 //! Files of cells: what each field of them means, and what is left out.
 
+use glam::DVec3;
 use localshape_mesh::{Format, Limits, Mesh, Surface, Volume, read, read_cells};
 use localshape_sim::geometry::{kind, volume_by_faces};
 use localshape_sim::{Dimension, Solids};
@@ -148,8 +149,16 @@ fn ghost_cells_are_left_out_and_join_the_pieces() {
     // Other flags of VisIt and VTK leave nothing out.
     let shown = text.replace("0 0 0 1 1 1", "2 4 16 1 1 1");
     assert_eq!(volume(shown, Format::Vtu).cells.len(), 6);
+    // Cells that finer ones cover and hidden ones are no part of the body, and no copies that join pieces.
+    for flag in ["8", "32", "40"] {
+        let hidden = text.replace("0 0 0 1 1 1", &format!("{flag} 0 0 1 1 1"));
+        let found = volume(&hidden, Format::Vtu);
+        assert_eq!(found.cells.len(), volume(&text, Format::Vtu).cells.len() - text.matches("0 0 0 1 1 1").count());
+        let listed = read_cells(hidden.as_bytes(), Format::Vtu, &LIMITS).expect("sound");
+        assert_eq!(listed.copies.len(), 6, "{flag}");
+    }
     let short = refusal(text.replace("0 0 0 1 1 1", "0 0 0 1 1"), Format::Vtu);
-    assert!(short.starts_with("has 6 cells, but tells of 5 whether they are ghosts (the file is damaged"), "{short}");
+    assert!(short.starts_with("has 5 entries in its array `vtkGhostType` in line "), "{short}");
 }
 
 /// Points at one place are the sides of a crack where no copy tells that they are one.
@@ -170,7 +179,12 @@ fn pieces_are_joined_at_copies_alone() {
     assert_eq!(points_of(&data("1 0 0 0 0 0 0 1")), 10);
     assert_eq!(points_of(&data("1 1 0 0 0 0 1 1")), 8);
     let short = refusal(grid(&piece(&points, one, &data("1 0"))), Format::Vtu);
-    assert!(short.starts_with("has 8 points, but tells of 2 whether they are ghosts"), "{short}");
+    assert!(short.starts_with("has 2 entries in its array `vtkGhostType` in line "), "{short}");
+    assert!(short.contains("; expected 8, one for each point (the file is damaged"), "{short}");
+    // A hidden point is no part of the body, and neither are its cells. 6 belongs to one of three, and 1 to another.
+    let hidden = |numbers: &str| volume(grid(&piece(&points, one, &data(numbers))), Format::Vtu).cells.len();
+    assert_eq!(hidden("0 0 0 0 0 0 2 0"), 2);
+    assert_eq!(hidden("0 2 0 0 0 0 2 0"), 1);
 }
 
 #[test]
@@ -192,13 +206,41 @@ fn ghosts_of_legacy_files_are_left_out() {
     // Twice, and in the name of another array.
     let data = format!(
         "CELL_DATA 6\nSCALARS vtkGhostTypes int\nLOOKUP_TABLE default\n1 2 3 4 5 6\n{0}{0}",
-        "vtkGhostType 1 6 int\n1 0 0 0 0 0\n"
+        "FIELD a 1\nvtkGhostType 1 6 int\n1 0 0 0 0 0\n"
     );
     assert_eq!(volume(legacy(&data), Format::Vtk).cells.len(), 5);
     let data = "POINT_DATA 8\nSCALARS vtkGhostType unsigned_char\n0 0 0 0 0 0 0 1\n";
     assert_eq!(read_cells(legacy(data).as_bytes(), Format::Vtk, &LIMITS).expect("sound").copies.indices(), [7]);
     let cut = refusal(legacy("CELL_DATA 6\nSCALARS vtkGhostType unsigned_char\n0 0 0"), Format::Vtk);
     assert!(cut.starts_with("ends in line 18; expected what tells ghosts"), "{cut}");
+    let data = "POINT_DATA 8\nSCALARS vtkGhostType unsigned_char\n0 2 0 0 0 0 0 0\n";
+    assert_eq!(volume(legacy(data), Format::Vtk).cells.len(), 4, "a hidden point takes its cells with it");
+}
+
+/// Arrays of any kind may stand before vectors. The velocity `U` of OpenFOAM is known by the pressure beside it.
+#[test]
+fn vectors_of_legacy_files_are_those_of_xml() {
+    let vectors = "1 0 0 0 2 0 0 0 3 0 0 0 0 0 0 0 0 0 0 0 0 4 5 6";
+    let moved = |data: &str| read_cells(legacy(data).as_bytes(), Format::Vtk, &LIMITS).expect("sound").displacements;
+    let before = "CELL_DATA 6\nSCALARS a float 2\nLOOKUP_TABLE b\n1 2 3 4 5 6 7 8 9 10 11 12\nLOOKUP_TABLE b 1\n0 0 0 1\n\
+                  COLOR_SCALARS c 1\n0 0 0 0 0 1\nPOINT_DATA 8\nTEXTURE_COORDINATES d 1 float\n1 2 3 4 5 6 7 8\n\
+                  METADATA\nINFORMATION 0\n\n";
+    for name in ["displacement", "U", "u"] {
+        for data in
+            [format!("VECTORS {name} double\n{vectors}\n"), format!("FIELD f 1\n{name} 3 8 double\n{vectors}\n")]
+        {
+            let found = moved(&(before.to_owned() + &data)).expect("displacements");
+            assert_eq!((found[1], found[7]), (DVec3::Y * 2.0, DVec3::new(4.0, 5.0, 6.0)), "{data}");
+            assert_eq!(
+                moved(&format!("{before}{data}SCALARS p float\n1 2 3 4 5 6 7 8\n")).is_some(),
+                name == "displacement"
+            );
+        }
+    }
+    let short = refusal(legacy("POINT_DATA 7\nVECTORS u double\n"), Format::Vtk);
+    assert!(short.starts_with("has 7 entries in its array `u` in line 17; expected 8, one for each point"), "{short}");
+    let found = volume(legacy("POINT_DATA 8\nSPHERES\n"), Format::Vtk);
+    assert_eq!(found.notes, ["has `SPHERES` in line 17 among its data, of which the rest is not read"]);
 }
 
 #[test]
@@ -247,25 +289,20 @@ fn attributes_in_single_quotes_are_read() {
 
 #[test]
 fn flat_cells_among_others_are_left_out_and_told() {
+    const CORNERS: &str = "[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]";
     let points = array("Points", "3", POINTS);
     let found = volume(grid(&piece(&points, &(corners() + "0 1 3 2"), "")), Format::Vtu);
     assert_eq!(found.cells.len(), 6);
     assert!((whole(&found) - 6.0).abs() < 1e-12);
-    assert_eq!(
-        found.notes,
-        ["has a cell without volume, which is left out: cell 6, counted from 0, with the points 0, 1, 3, 2"]
-    );
+    assert_eq!(found.notes, [format!("has a cell without volume, which is left out: it has corners at {CORNERS}")]);
     let found = volume(grid(&piece(&points, &(corners() + "0 1 3 2 4 4 5 6"), "")), Format::Vtu);
     assert_eq!(
         found.notes,
-        [
-            "has 2 cells without volume, which are left out; the first is cell 6, counted from 0, with the points 0, 1, 3, 2"
-        ]
+        [format!("has 2 cells without volume, which are left out: the first has corners at {CORNERS}")]
     );
     let found = refusal(grid(&piece(&points, "0 1 3 2", "")), Format::Vtu);
-    assert!(found.starts_with(
-        "has only cells without volume; the first is cell 0, counted from 0, with the points 0, 1, 3, 2 (mesh"
-    ));
+    let expected = format!("has only cells without volume: the first has corners at {CORNERS} (mesh");
+    assert!(found.starts_with(&expected), "{found}");
 }
 
 #[test]
@@ -454,10 +491,10 @@ fn an_assembly_of_abaqus_has_the_mesh_of_its_part_or_of_its_instance() {
         assert_eq!(group(&found, "Tip"), [[0.0, 0.0, 1.0]]);
         assert_eq!(group(&found, "held"), [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         assert!(group(&found, "far").contains(&[1.0, 1.0, 1.0]));
-        assert_eq!(found.notes, ["has a set of its assembly without `INSTANCE`, which is not read"]);
+        assert_eq!(found.notes, ["has sets of its assembly without `INSTANCE`, which are not read: 1"]);
     }
     let two = dependent.replace("*END ASSEMBLY", "*ELSET, ELSET=other\n1\n*END ASSEMBLY");
-    let expected = ["has 2 sets of its assembly without `INSTANCE`, which are not read"];
+    let expected = ["has sets of its assembly without `INSTANCE`, which are not read: 2"];
     assert_eq!(volume(two, Format::Abaqus).notes, expected);
 }
 

@@ -139,15 +139,16 @@ fn points_in_a_row_are_joined_with_the_first_within_the_distance() {
 
 #[test]
 fn points_without_coordinates_are_left_out_if_no_face_has_them() {
+    let lost = ["has a point without coordinates, which is left out".to_owned()];
     for name in ["unknown-point.obj", "unknown-point.ply", "unknown-point-binary.ply"] {
         let found = surface_of(name);
-        assert_eq!((found.points.len(), found.lost, found.mended().1.lost), (8, 1, 1), "{name}");
+        assert_eq!((found.points.len(), &found.notes[..]), (8, &lost[..]), "{name}");
     }
     // Corners behind the point are those of the file.
     for nothing in ["nan", "-nan(ind)", "NaN", "1.#QNAN", "-1.#IND", "inf", "-Infinity"] {
         let text = format!("v 0 0 0\nv {nothing} 0 {nothing}\nv 1 0 0\nv 0 2 1\ng a\nf 1 3 4\n");
         let found = surface(text.as_bytes(), Format::Obj);
-        assert_eq!((found.lost, &found.triangles[..]), (1, &[[0, 1, 2]][..]), "{nothing}");
+        assert_eq!((&found.notes[..], &found.triangles[..]), (&lost[..], &[[0, 1, 2]][..]), "{nothing}");
         assert_eq!((found.points[2], &found.groups[0].points[..]), (DVec3::new(0.0, 2.0, 1.0), &[0, 1, 2][..]));
         let text = text.replace("f 1 3 4", "f 1 2 4");
         let expected =
@@ -235,6 +236,13 @@ fn names_of_obj_are_groups() {
     assert_eq!(groups, expected);
     let (mended, _) = found.mended();
     assert_eq!(mended.groups, found.groups);
+    // A comment is no part of a name.
+    for comment in [" # of the front", "\t#2", "  ##"] {
+        let names = ["my box", "left arm", "dark red"].map(|name| (format!("{name}\n"), format!("{name}{comment}\n")));
+        let commented = names.iter().fold(text.to_owned(), |text, (name, with)| text.replace(name, with));
+        assert_eq!(surface(commented.as_bytes(), Format::Obj).groups, found.groups, "{comment}");
+    }
+    assert_eq!(surface(text.replace("dark red", "red#2").as_bytes(), Format::Obj).groups[4].name, "red#2");
     // A sentence is one name.
     let text = text.replace("left arm", "a b c d e f g h i");
     assert_eq!(surface(text.as_bytes(), Format::Obj).groups[0].name, "a b c d e f g h i");

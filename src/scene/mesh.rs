@@ -159,7 +159,6 @@ pub(crate) fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2
 /// others.
 pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
     [
-        (flaws.lost, "point", " without coordinates left out"),
         (flaws.near, "point", " welded that only round-off sets apart"),
         (flaws.degenerate, "triangle", " without area left out"),
         (flaws.doubled, "doubled triangle", " left out"),

@@ -399,7 +399,7 @@ fn groups_of_obj_files_are_named() {
 fn points_without_coordinates_are_told() {
     for name in ["unknown-point.obj", "unknown-point.ply", "unknown-point-binary.ply"] {
         let scene = load(&with(name, "fill.cells = 6"), &[(name, &field(name))]).unwrap();
-        assert_eq!(messages(&scene), format!("`{name}` is mended: 1 point without coordinates left out \n"));
+        assert_eq!(messages(&scene), format!("`{name}` has a point without coordinates, which is left out \n"));
         assert!((scene.bodies[0].body.mass.iter().sum::<f64>() - 6000.0).abs() < 1e-9);
     }
 }
@@ -435,7 +435,7 @@ fn what_is_left_out_of_cells_is_told() {
     let flat = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n\
                 0 0 0 1 0 0 0 1 0 0 0 1 1 1 0\nCELLS 2 10\n4 0 1 2 3\n4 0 1 4 2\nCELL_TYPES 2\n10 10\n";
     let scene = loaded(&with("flat.vtk", ""), &[("flat.vtk", flat)]);
-    let expected = "`flat.vtk` has a cell without volume, which is left out: cell 1, counted from 0, with the points 0, 1, 4, 2 \n";
+    let expected = "`flat.vtk` has a cell without volume, which is left out: it has corners at [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0] \n";
     assert_eq!(messages(&scene), expected);
     assert_eq!((scene.bodies[0].body.len(), scene.bodies[0].body.elements.len()), (4, 1));
     let scene = load(&with("kinds.inp", ""), &[("kinds.inp", &field("kinds.inp"))]).unwrap();

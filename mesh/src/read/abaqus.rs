@@ -296,17 +296,9 @@ impl Reader<'_, '_> {
             }
             self.builder.cells.notes.push(note);
         }
-        match self.left_out {
-            0 => {}
-            1 => self
-                .builder
-                .cells
-                .notes
-                .push("has a set of its assembly without `INSTANCE`, which is not read".to_owned()),
-            count => {
-                let note = format!("has {count} sets of its assembly without `INSTANCE`, which are not read");
-                self.builder.cells.notes.push(note);
-            }
+        if self.left_out > 0 {
+            let note = format!("has sets of its assembly without `INSTANCE`, which are not read: {}", self.left_out);
+            self.builder.cells.notes.push(note);
         }
         let [nodes, elements] = self.sets;
         for (key, (name, members)) in elements {

@@ -67,11 +67,9 @@ pub struct Cells {
     pub groups: Vec<Group>,
     /// Velocity of each point, in the unit of the file a second: the point data `velocity` of VTK's grids.
     pub velocities: Option<Vec<DVec3>>,
-    /// Displacement of each point, in the unit of the file: the point data of VTK's grids named `displacement` or `u`, in capital letters
-    /// or not. They are not added to the points.
+    /// Displacement of each point, in the unit of the file: the point data of VTK's grids named `displacement` or, without a pressure `p`
+    /// beside it, `u`, in capital letters or not. They are not added to the points.
     pub displacements: Option<Vec<DVec3>>,
-    /// The number of points of the file without coordinates, which no cell names and which are left out.
-    pub lost: usize,
     /// Single points, and the corners of further cells, that are copies of those in other pieces of a parallel run.
     pub copies: IndexLists,
     /// What is left out of the file or not read, each as the predicate of a sentence about it.
@@ -87,6 +85,18 @@ pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
     AROUND.map(|place| corners[place])
 }
 
+/// What VTK tells of a point or a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Ghost {
+    /// It is one of this piece.
+    #[default]
+    None,
+    /// It is a copy of one in another piece.
+    Copy,
+    /// It is no part of the body.
+    Hidden,
+}
+
 /// A dimension and the number of a set of points.
 type Key = (i64, i64);
 
@@ -94,8 +104,8 @@ type Key = (i64, i64);
 #[derive(Debug)]
 pub(super) struct Builder<'l> {
     pub(super) cells: Cells,
-    /// Whether the next cells are copies of cells in other pieces, and no cells themselves.
-    pub(super) is_copy: bool,
+    /// What VTK tells of the first points and cells.
+    ghosts: [Vec<Ghost>; 2],
     groups: BTreeMap<String, Vec<u32>>,
     /// Sets of points by their numbers, and the names of some of them.
     numbered: BTreeMap<Key, Vec<u32>>,
@@ -115,9 +125,9 @@ pub(super) struct Builder<'l> {
 
 impl<'l> Builder<'l> {
     pub(super) fn new(limits: &'l Limits) -> Self {
-        let (cells, is_copy, groups, numbered, set_names, grouped) = Default::default();
+        let (cells, ghosts, groups, numbered, set_names, grouped) = Default::default();
         let (highest, lost, names, named) = Default::default();
-        Self { cells, is_copy, groups, numbered, set_names, grouped, limits, highest, lost, names, named }
+        Self { cells, ghosts, groups, numbered, set_names, grouped, limits, highest, lost, names, named }
     }
 
     /// The number of points so far.
@@ -183,13 +193,8 @@ impl<'l> Builder<'l> {
         if corners.is_empty() {
             return Ok(());
         }
-        let Cells { corners: own, copies, .. } = &mut self.cells;
-        if own.indices().len() + copies.indices().len() + corners.len() > most {
+        if self.cells.corners.indices().len() + corners.len() > most {
             return Err(too_many(&format!("more than {most}"), "corners", most));
-        }
-        if self.is_copy {
-            copies.push(corners);
-            return Ok(());
         }
         self.cells.kinds.push(kind);
         self.cells.corners.push(corners);
@@ -256,6 +261,41 @@ impl<'l> Builder<'l> {
         }
     }
 
+    /// Tells what the points from an index on are.
+    pub(super) fn ghosts(&mut self, from: usize, ghosts: Vec<Ghost>) {
+        self.ghosts[0].resize(from, Ghost::None);
+        self.ghosts[0].extend(ghosts);
+    }
+
+    /// Tells what cells of the file are, if anything, by the first cell that each became.
+    pub(super) fn ghosts_of_cells(&mut self, starts: &[usize], ghosts: &[Ghost]) {
+        let ends = starts.iter().skip(1).copied().chain([self.cells.kinds.len()]);
+        for ((&start, end), &ghost) in starts.iter().zip(ends).zip(ghosts) {
+            self.ghosts[1].resize(start, Ghost::None);
+            self.ghosts[1].resize(end, ghost);
+        }
+    }
+
+    /// Takes copies of cells out, with the points that are copies, and leaves out what is no part of the body.
+    fn drop_ghosts(&mut self) {
+        let [points, cells] = std::mem::take(&mut self.ghosts);
+        let of = |all: &[Ghost], at: usize| all.get(at).copied().unwrap_or_default();
+        let (kinds, corners) = (std::mem::take(&mut self.cells.kinds), std::mem::take(&mut self.cells.corners));
+        for (at, (kind, cell)) in kinds.into_iter().zip(corners.iter()).enumerate() {
+            let is_hidden = cell.iter().any(|&point| of(&points, point as usize) == Ghost::Hidden);
+            match of(&cells, at) {
+                Ghost::Copy => self.cells.copies.push(cell),
+                Ghost::None if !is_hidden => {
+                    self.cells.kinds.push(kind);
+                    self.cells.corners.push(cell);
+                }
+                _ => {}
+            }
+        }
+        let copies = (0..).zip(&points).filter(|(_, ghost)| **ghost == Ghost::Copy);
+        copies.for_each(|(point, _)| self.cells.copies.push(&[point]));
+    }
+
     /// Leaves points without coordinates out, if no cell names them.
     fn drop_lost(&mut self, source: &Source<'_>, first: u64) -> Result<(), ReadError> {
         let cells = &mut self.cells;
@@ -269,7 +309,10 @@ impl<'l> Builder<'l> {
         let mut new = vec![0; cells.points.len()];
         self.lost.iter().for_each(|(index, _)| new[*index as usize] = NONE);
         let kept = Used::numbered(new);
-        cells.lost = self.lost.len();
+        cells.notes.push(match self.lost.len() {
+            1 => "has a point without coordinates, which is left out".to_owned(),
+            lost => format!("has {lost} points without coordinates, which are left out"),
+        });
         cells.points = kept.of(&cells.points);
         cells.velocities = cells.velocities.take().map(|all| kept.of(&all));
         cells.displacements = cells.displacements.take().map(|all| kept.of(&all));
@@ -305,6 +348,9 @@ impl<'l> Builder<'l> {
         // Some pieces may have none.
         self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);
         self.cells.displacements = self.cells.displacements.filter(|all| all.len() == count);
+        if self.ghosts.iter().flatten().any(|&ghost| ghost != Ghost::None) {
+            self.drop_ghosts();
+        }
         if !self.lost.is_empty() {
             self.drop_lost(source, first)?;
         }
@@ -375,8 +421,8 @@ impl Cells {
     fn faces(mut self) -> Result<Mesh, ReadError> {
         self.join();
         let triangles = self.triangles()?;
-        let Self { points, groups, lost, notes, .. } = self;
-        Ok(Mesh::Surface(Surface { points, triangles, groups, lost, notes }.compact()))
+        let Self { points, groups, notes, .. } = self;
+        Ok(Mesh::Surface(Surface { points, triangles, groups, notes }.compact()))
     }
 
     /// All that could be elements of one kind: the cells with a volume; else the faces, in space as triangles; else the lines. Points
@@ -452,17 +498,12 @@ impl Cells {
     }
 
     /// A volume of some lists of points, with only their points.
-    pub(super) fn volume(mut self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
+    pub(super) fn volume(self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
         let used = Used::new(self.points.len(), lists.indices());
         let renamed: Vec<u32> = lists.indices().iter().map(|&corner| used.new[corner as usize]).collect();
         let cells = (0..lists.len()).map(|at| &renamed[lists.range(at)]).collect();
         let groups = used.groups(&self.groups);
         let (points, places) = (used.of(&self.points), used.of(&(0..self.points.len() as u32).collect::<Vec<_>>()));
-        match self.lost {
-            0 => {}
-            1 => self.notes.push("has a point without coordinates, which is left out".to_owned()),
-            lost => self.notes.push(format!("has {lost} points without coordinates, which are left out")),
-        }
         Volume { dimension, points, places, solids, cells, groups, turned, notes: self.notes }
     }
 

@@ -8,7 +8,7 @@ const PAGE: &str = "the download gave a page in place of the file: download the 
 /// The remedy for packed files.
 const PACKED: &str = "unpack it first";
 /// The remedy for other formats of meshes.
-const OTHER: &str = "convert it to OBJ, STL, PLY, OFF, glTF, Gmsh (.msh), VTK or VTU";
+const OTHER: &str = "convert it to OBJ, STL, PLY, OFF, glTF, Gmsh (.msh), VTK, VTU, Medit (.mesh) or Abaqus (.inp)";
 
 /// Refuses a file that is empty, or of another kind than its ending says.
 pub(super) fn check(bytes: &[u8], format: Format) -> Result<(), ReadError> {

@@ -1,6 +1,7 @@
 //! Copies of points and cells that the pieces of a parallel run have of each other.
 
 use super::Cells;
+use crate::edges::Sets;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -41,25 +42,9 @@ impl Cells {
         if self.copies.is_empty() {
             return;
         }
-        // Each point leads to one that is not behind it.
-        let mut leads: Vec<u32> = (0..self.points.len() as u32).collect();
-        let first = |leads: &mut [u32], mut point: u32| {
-            while leads[point as usize] != point {
-                leads[point as usize] = leads[leads[point as usize] as usize];
-                point = leads[point as usize];
-            }
-            point
-        };
-        for [one, other] in self.pairs() {
-            let (one, other) = (first(&mut leads, one), first(&mut leads, other));
-            leads[one.max(other) as usize] = one.min(other);
-        }
-        for point in 0..leads.len() {
-            leads[point] = leads[leads[point] as usize];
-        }
-        let corners = std::mem::take(&mut self.corners);
-        for cell in corners.iter() {
-            self.corners.push(&cell.iter().map(|&corner| leads[corner as usize]).collect::<Vec<_>>());
-        }
+        let mut sets = Sets::new(self.points.len());
+        self.pairs().into_iter().for_each(|[one, other]| sets.join(one, other));
+        let first: Vec<u32> = (0..self.points.len() as u32).map(|point| sets.of(point)).collect();
+        self.rename(&first);
     }
 }

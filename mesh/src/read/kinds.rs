@@ -80,24 +80,3 @@ pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Build
     // Faces may not fit together.
     if sorted == points { builder.around(kind, &corners) } else { builder.cell(CellKind::Polyhedron, &points) }
 }
-
-/// The names of arrays that tell copies of cells and points of other pieces: VTK's, and that of VTK before version 7.
-pub(super) const GHOSTS: [&[u8]; 2] = [b"vtkGhostType", b"vtkGhostLevels"];
-
-/// Whether a number in an array of this name leaves a cell or a point out (`vtkDataSetAttributes.h`).
-pub(super) fn is_ghost(name: &[u8], number: i64, is_cell: bool) -> bool {
-    /// Copies, cells that finer ones cover, and hidden cells.
-    const CELL: i64 = 1 | 8 | 32;
-    if name == GHOSTS[1] { number > 0 } else { number & if is_cell { CELL } else { 1 } != 0 }
-}
-
-/// Refuses arrays of ghosts that are there with another length than the number of points and of cells.
-pub(super) fn check_ghosts(found: [&[bool]; 2], counts: [usize; 2]) -> Result<(), ReadError> {
-    for ((found, count), what) in found.iter().zip(counts).zip(["points", "cells"]) {
-        if !found.is_empty() && found.len() != count {
-            let message = format!("has {count} {what}, but tells of {} whether they are ghosts", found.len());
-            return Err(ReadError::new(message, DAMAGED));
-        }
-    }
-    Ok(())
-}

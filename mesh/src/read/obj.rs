@@ -47,16 +47,19 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     }
 }
 
-/// The rest of a line as a name.
+/// The rest of a line as a name, without a comment behind it.
 fn whole(rest: &[u8]) -> String {
-    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+    let begins = |pair: &[u8]| pair[0].is_ascii_whitespace() && pair[1] == b'#';
+    let name = &rest[..rest.windows(2).position(begins).unwrap_or(rest.len())];
+    String::from_utf8_lossy(name.trim_ascii()).into_owned()
 }
 
 /// The groups that a line names. By the format each word is one, but many programs write one name with spaces: both are names.
 fn groups(rest: &[u8]) -> Vec<String> {
     /// More words are a sentence. This limits the groups of a face.
     const MOST: usize = 8;
-    let words: Vec<_> = rest.trim_ascii().split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
+    let whole = whole(rest);
+    let words: Vec<_> = whole.split_whitespace().collect();
     let each = words.iter().filter(|_| (2..=MOST).contains(&words.len()));
-    each.map(|word| whole(word)).chain([whole(rest)]).collect()
+    each.map(|&word| word.to_owned()).chain([whole.clone()]).collect()
 }

@@ -88,15 +88,17 @@ impl Parts {
         let (flat, first) = self.flat;
         if flat > 0 {
             let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
-            let shown: Vec<String> = cells.corners[first].iter().take(8).map(u32::to_string).collect();
-            let corners = format!("cell {first}, counted from 0, with the points {}", shown.join(", "));
+            // Files number points and cells in ways of their own.
+            let places = cells.corners[first].iter().map(|&corner| cells.points[corner as usize].to_array());
+            let shown: Vec<String> = places.take(4).map(|place| format!("{place:?}")).collect();
+            let corners = shown.join(", ");
             if self.cells.is_empty() {
-                let message = format!("has only cells without {what}; the first is {corners}");
+                let message = format!("has only cells without {what}: the first has corners at {corners}");
                 return Err(ReadError::new(message, "mesh the object again"));
             }
             cells.notes.push(match flat {
-                1 => format!("has a cell without {what}, which is left out: {corners}"),
-                _ => format!("has {flat} cells without {what}, which are left out; the first is {corners}"),
+                1 => format!("has a cell without {what}, which is left out: it has corners at {corners}"),
+                _ => format!("has {flat} cells without {what}, which are left out: the first has corners at {corners}"),
             });
         }
         Ok(cells.volume(self.dimension, solids, &self.cells, self.turned))

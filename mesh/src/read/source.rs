@@ -187,6 +187,7 @@ impl<'b> Source<'b> {
         Ok(())
     }
 
+    #[inline]
     fn array<const N: usize>(&mut self, expected: &str) -> Result<[u8; N], ReadError> {
         match self.rest().first_chunk::<N>() {
             Some(bytes) => {
@@ -202,11 +203,13 @@ impl<'b> Source<'b> {
     }
 
     /// A number: a coordinate, for example.
+    #[inline]
     pub(super) fn float(&mut self, scalar: Scalar, expected: &str) -> Result<f64, ReadError> {
         self.number(scalar, expected, false)
     }
 
     /// A number, or NaN if it may be unknown.
+    #[inline]
     fn number(&mut self, scalar: Scalar, expected: &str, may_be_unknown: bool) -> Result<f64, ReadError> {
         if self.coding != Coding::Text {
             return match scalar {
@@ -228,16 +231,19 @@ impl<'b> Source<'b> {
     }
 
     /// A coordinate of a point, or what programs write for one that they do not know, which is read as NaN.
+    #[inline]
     pub(super) fn coordinate(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
         self.number(scalar, "a coordinate", true)
     }
 
     /// The coordinates of a point, one after the other. Those that are no numbers are NaN.
+    #[inline]
     pub(super) fn point(&mut self, scalar: Scalar) -> Result<DVec3, ReadError> {
         Ok(DVec3::new(self.coordinate(scalar)?, self.coordinate(scalar)?, self.coordinate(scalar)?))
     }
 
     /// An integer: an index, for example.
+    #[inline]
     pub(super) fn integer(&mut self, scalar: Scalar, expected: &str) -> Result<i64, ReadError> {
         if self.coding == Coding::Text {
             let word = self.word();

@@ -2,10 +2,10 @@
 //! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html>).
 
 use super::cells::Builder;
-use super::kinds::GHOSTS;
-use super::source::{Coding, DAMAGED, Scalar, Source};
-use super::{Cells, Format, Limits, ReadError, content, kinds};
-use memchr::memmem;
+use super::source::{Coding, DAMAGED, Scalar, Source, integer};
+use super::{Cells, Format, Limits, ReadError, arrays, content, kinds};
+use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Lists of points, one after the other.
 #[derive(Default)]
@@ -23,19 +23,6 @@ impl Lists {
 }
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
-    // Which cells are copies is told behind them.
-    let mut reader = read_with(bytes, Vec::new(), limits)?;
-    if reader.ghosts[1].contains(&true) {
-        reader = read_with(bytes, std::mem::take(&mut reader.ghosts[1]), limits)?;
-    }
-    let copies = (0..).zip(&reader.ghosts[0]).filter(|&(_, &is_copy)| is_copy).map(|(point, _)| point);
-    copies.for_each(|point| reader.builder.cells.copies.push(&[point]));
-    reader.source.coding = reader.coding;
-    reader.builder.finish(&reader.source, 0)
-}
-
-/// Reads a file whose copies among the cells are known.
-fn read_with<'b, 'l>(bytes: &'b [u8], copies: Vec<bool>, limits: &'l Limits) -> Result<Reader<'b, 'l>, ReadError> {
     let mut source = Source::text(bytes);
     if !source.line().to_ascii_lowercase().starts_with(b"# vtk datafile version") {
         return Err(content::no_beginning(bytes, Format::Vtk, "`# vtk DataFile Version`"));
@@ -48,22 +35,17 @@ fn read_with<'b, 'l>(bytes: &'b [u8], copies: Vec<bool>, limits: &'l Limits) -> 
         b"BINARY" => Coding::Big,
         _ => return Err(source.wrong(word, "`ASCII` or `BINARY`")),
     };
-    let mut reader = Reader {
-        source,
-        coding,
-        builder: Builder::new(limits),
-        limits,
-        cells: None,
-        copies,
-        count: 0,
-        ghosts: Default::default(),
-    };
+    let (cells, starts, of, rows, vectors) = Default::default();
+    let mut reader = Reader { source, coding, builder: Builder::new(limits), limits, cells, starts, of, rows, vectors };
     while reader.section()? {}
     if reader.cells.is_some() {
         return Err(reader.source.ends("`CELL_TYPES`"));
     }
-    reader.ghosts()?;
-    Ok(reader)
+    let displacement = arrays::displacement(|name| reader.vectors.contains_key(name));
+    reader.builder.cells.velocities = reader.vectors.remove(arrays::VELOCITY);
+    reader.builder.cells.displacements = reader.vectors.remove(displacement);
+    reader.source.coding = reader.coding;
+    reader.builder.finish(&reader.source, 0)
 }
 
 struct Reader<'b, 'l> {
@@ -73,12 +55,22 @@ struct Reader<'b, 'l> {
     limits: &'l Limits,
     /// Cells whose types follow.
     cells: Option<Lists>,
-    /// Which cells are copies, as far as it is known.
-    copies: Vec<bool>,
-    /// The number of cells so far.
-    count: usize,
-    /// Which points and cells are copies, as the end of the file tells.
-    ghosts: [Vec<bool>; 2],
+    /// The first cell that each cell of the file became.
+    starts: Vec<usize>,
+    /// What the arrays that follow are about, and how many of them there are.
+    of: Of,
+    rows: u64,
+    /// Vectors of points by the names of their arrays.
+    vectors: BTreeMap<&'static [u8], Vec<DVec3>>,
+}
+
+/// What an array is about.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Of {
+    #[default]
+    All,
+    Points,
+    Cells,
 }
 
 impl Reader<'_, '_> {
@@ -106,11 +98,10 @@ impl Reader<'_, '_> {
             b"TRIANGLE_STRIPS" => self.faces(6)?,
             b"METADATA" => self.metadata(),
             b"FIELD" => self.fields()?,
-            // What follows belongs to points and cells.
-            b"" | b"CELL_DATA" | b"POINT_DATA" => {
-                self.source.at -= word.len();
-                return Ok(false);
-            }
+            b"POINT_DATA" => self.data(Of::Points)?,
+            b"CELL_DATA" => self.data(Of::Cells)?,
+            b"" => return Ok(false),
+            keyword if self.of != Of::All => return self.attribute(keyword, word),
             _ => return Err(self.source.wrong(word, "`POINTS`, `CELLS` or another section")),
         }
         Ok(true)
@@ -126,6 +117,7 @@ impl Reader<'_, '_> {
         let count = self.source.count(Scalar::I64, "the number of points")?;
         self.builder.expect(count, 0)?;
         let scalar = self.scalar()?;
+        self.source.line();
         self.source.coding = self.coding;
         for _ in 0..count {
             let at = self.source.at;
@@ -135,41 +127,103 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Reads which points and cells are copies, wherever that stands among their data.
-    fn ghosts(&mut self) -> Result<(), ReadError> {
-        let (start, data) = (self.source.at, self.source.rest());
-        let (mut before, mut of_cells) = (0, false);
-        for at in memmem::find_iter(data, "vtkGhost") {
-            let last = ["POINT_DATA", "CELL_DATA"].map(|of| memmem::rfind(&data[before..at], of.as_bytes()));
-            of_cells = if last == [None; 2] { of_cells } else { last[1] > last[0] };
-            before = at;
-            // What was read as numbers already is no name.
-            let is_name =
-                |name: &&[u8]| data[at..].strip_prefix(*name).is_some_and(|rest| rest.trim_ascii_start() != rest);
-            let found = GHOSTS.into_iter().find(is_name).filter(|_| start + at >= self.source.at);
-            let Some(name) = found else { continue };
-            self.source.at = start + at + name.len();
-            // In a field, the numbers of columns and rows stand before the type; else a table of colours may follow.
-            if self.source.peek().first().is_some_and(u8::is_ascii_digit) {
-                self.source.skip(2, Scalar::I64, "the number of data")?;
-            }
-            let scalar = self.scalar()?;
-            if self.source.peek() == b"LOOKUP_TABLE" {
-                self.source.line();
-            }
-            let ghosts = &mut self.ghosts[usize::from(of_cells)];
-            ghosts.clear();
-            self.source.coding = self.coding;
-            for _ in 0..if of_cells { self.count } else { self.builder.points() } {
-                let number = self.source.integer(scalar, "what tells ghosts")?;
-                ghosts.push(kinds::is_ghost(name, number, of_cells));
-            }
-            self.source.coding = Coding::Text;
-        }
+    /// Begins the arrays of points or of cells.
+    fn data(&mut self, of: Of) -> Result<(), ReadError> {
+        self.rows = self.source.count(Scalar::I64, "the number of points or cells")?;
+        self.of = of;
         Ok(())
     }
 
-    /// Reads the name of a type and the end of the line.
+    /// Reads an array of points or cells. Returns false if it is none.
+    fn attribute(&mut self, keyword: &[u8], word: &[u8]) -> Result<bool, ReadError> {
+        let columns = match keyword {
+            b"SCALARS" | b"GLOBAL_IDS" | b"PEDIGREE_IDS" | b"EDGE_FLAGS" => 1,
+            b"VECTORS" | b"NORMALS" => 3,
+            b"TENSORS" => 9,
+            b"TENSORS6" => 6,
+            b"COLOR_SCALARS" | b"LOOKUP_TABLE" | b"TEXTURE_COORDINATES" => 0,
+            _ => {
+                let note = self.source.wrong(word, "").message;
+                let note = note.trim_end_matches("; expected ");
+                self.builder.cells.notes.push(format!("{note} among its data, of which the rest is not read"));
+                return Ok(false);
+            }
+        };
+        let name = self.source.word();
+        let columns =
+            if columns > 0 { columns } else { self.source.count(Scalar::I64, "a number of columns or rows")? };
+        match keyword {
+            b"COLOR_SCALARS" | b"LOOKUP_TABLE" => {
+                self.source.line();
+                let (columns, rows) = if keyword == b"LOOKUP_TABLE" { (4, columns) } else { (columns, self.rows) };
+                self.skip(columns.saturating_mul(rows), Scalar::U8)?;
+            }
+            _ => self.array(name, columns, self.rows)?,
+        }
+        Ok(true)
+    }
+
+    /// Reads an array from its type on, if it is wanted. Another number of columns may follow the type.
+    fn array(&mut self, typed: &[u8], columns: u64, rows: u64) -> Result<(), ReadError> {
+        let at = self.source.at;
+        let kind = self.source.peek().to_ascii_lowercase();
+        if matches!(&*kind, b"string" | b"bit") {
+            self.source.line();
+            let count = columns.saturating_mul(rows);
+            return match self.coding {
+                _ if kind == b"string" => self.texts(count),
+                Coding::Text => self.skip(count, Scalar::U8),
+                _ => self.skip(count.div_ceil(8), Scalar::U8),
+            };
+        }
+        let scalar = self.scalar()?;
+        let columns = integer(self.source.line().trim_ascii()).map_or(columns, |own| own.unsigned_abs());
+        if self.source.peek().eq_ignore_ascii_case(b"LOOKUP_TABLE") {
+            self.source.line();
+        }
+        let of_cells = self.of == Of::Cells;
+        let name = arrays::wanted(typed, of_cells, columns as usize).filter(|_| self.of != Of::All);
+        let is_read = |name: &&[u8]| {
+            if arrays::is_vector(name) { matches!(columns, 2 | 3) } else { columns == 1 && *name != arrays::PRESSURE }
+        };
+        let Some(name) = name.filter(is_read) else {
+            name.into_iter().for_each(|name| drop(self.vectors.insert(name, Vec::new())));
+            return self.skip(columns.saturating_mul(rows), scalar);
+        };
+        let expected = if of_cells { self.starts.len() } else { self.builder.points() };
+        self.source.coding = self.coding;
+        arrays::check(typed, rows as usize, expected, of_cells, || self.source.place(at))?;
+        if !arrays::is_vector(name) {
+            let mut ghosts = Vec::new();
+            for _ in 0..expected {
+                ghosts.push(arrays::ghost(name, self.source.integer(scalar, "what tells ghosts")?, of_cells));
+            }
+            if of_cells {
+                self.builder.ghosts_of_cells(&self.starts, &ghosts);
+            } else {
+                self.builder.ghosts(0, ghosts);
+            }
+        } else {
+            let mut vectors = Vec::new();
+            for _ in 0..expected {
+                let mut next = || self.source.float(scalar, "a component of a vector");
+                vectors.push(DVec3::new(next()?, next()?, if columns == 3 { next()? } else { 0.0 }));
+            }
+            self.vectors.insert(name, vectors);
+        }
+        self.source.coding = Coding::Text;
+        Ok(())
+    }
+
+    /// Skips numbers.
+    fn skip(&mut self, count: u64, scalar: Scalar) -> Result<(), ReadError> {
+        self.source.coding = self.coding;
+        self.source.skip(count, scalar, "a number of an array")?;
+        self.source.coding = Coding::Text;
+        Ok(())
+    }
+
+    /// Reads the name of a type.
     fn scalar(&mut self) -> Result<Scalar, ReadError> {
         let word = self.source.word();
         let scalar = match &*word.to_ascii_lowercase() {
@@ -186,7 +240,6 @@ impl Reader<'_, '_> {
             b"double" => Scalar::F64,
             _ => return Err(self.source.wrong(word, "a type of numbers, such as `float`")),
         };
-        self.source.line();
         Ok(scalar)
     }
 
@@ -239,6 +292,7 @@ impl Reader<'_, '_> {
     /// Reads a type and so many integers of it.
     fn numbers(&mut self, count: u64, numbers: &mut Vec<i64>) -> Result<(), ReadError> {
         let scalar = self.scalar()?;
+        self.source.line();
         self.source.coding = self.coding;
         for _ in 0..count {
             numbers.push(self.source.integer(scalar, "an index")?);
@@ -272,8 +326,7 @@ impl Reader<'_, '_> {
     }
 
     fn cell(&mut self, kind: i64, list: &[i64], place: usize) -> Result<(), ReadError> {
-        self.builder.is_copy = self.copies.get(self.count).is_some_and(|&is_copy| is_copy);
-        self.count += 1;
+        self.starts.push(self.builder.cells.kinds.len());
         let mut corner = |index: i64| self.builder.corner(index, place, &self.source);
         if kind != 42 {
             let corners = list.iter().map(|&index| corner(index)).collect::<Result<Vec<_>, _>>()?;
@@ -293,31 +346,24 @@ impl Reader<'_, '_> {
         kinds::polyhedron(&faces, &[], &mut self.builder)
     }
 
-    /// Skips arrays of data.
+    /// Reads the arrays of a field.
     fn fields(&mut self) -> Result<(), ReadError> {
         self.source.word();
         for _ in 0..self.source.count(Scalar::I64, "the number of arrays")? {
-            if self.source.word().eq_ignore_ascii_case(b"METADATA") {
+            let mut name = self.source.word();
+            if name.eq_ignore_ascii_case(b"METADATA") {
                 self.metadata();
-                self.source.word();
+                name = self.source.word();
             }
             let columns = self.source.count(Scalar::I64, "the number of columns of an array")?;
             let rows = self.source.count(Scalar::I64, "the number of rows of an array")?;
-            if self.source.peek().eq_ignore_ascii_case(b"string") {
-                self.texts(columns.saturating_mul(rows))?;
-                continue;
-            }
-            let scalar = self.scalar()?;
-            self.source.coding = self.coding;
-            self.source.skip(columns.saturating_mul(rows), scalar, "a number of an array")?;
-            self.source.coding = Coding::Text;
+            self.array(name, columns, rows)?;
         }
         Ok(())
     }
 
     /// Skips texts: lines, or bytes after their number. The first two bits of the number tell its length.
     fn texts(&mut self, count: u64) -> Result<(), ReadError> {
-        self.source.line();
         for _ in 0..count {
             if self.coding == Coding::Text {
                 if self.source.rest().is_empty() {

@@ -1,11 +1,10 @@
 //! VTK's formats in XML: unstructured grids (`.vtu`) and polygons (`.vtp`). Arrays are text, Base64 or raw bytes at the end of the file,
 //! packed by zlib or not (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>).
 
-use super::cells::Builder;
-use super::kinds::GHOSTS;
+use super::cells::{Builder, Ghost};
 use super::pvd::attribute;
 use super::source::{CUT, Coding, DAMAGED, Scalar, Source, quoted};
-use super::{Cells, Format, Limits, ReadError, content, kinds};
+use super::{Cells, Format, Limits, ReadError, arrays, content, kinds};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
 use flate2::read::ZlibDecoder;
@@ -38,11 +37,13 @@ enum Place {
     Appended(usize),
 }
 
-/// Where the arrays beside points and cells that are read stand: velocities and displacements of points, and what tells copies.
+/// Where arrays beside those of points and cells stand.
 const POINT_DATA: &[u8] = b"PointData";
 const CELL_DATA: &[u8] = b"CellData";
-const VELOCITY: &[u8] = b"velocity";
-const DISPLACEMENT: &[u8] = b"displacement";
+
+/// Elements whose arrays are all read, and the type of cells in them, if it is one.
+const ELEMENTS: [(&[u8], i64); 6] =
+    [(b"Points", 0), (b"Cells", -1), (b"Verts", 2), (b"Lines", 4), (b"Polys", 7), (b"Strips", 6)];
 
 /// How the arrays of a file are written.
 struct Layout<'b> {
@@ -144,52 +145,11 @@ fn pieces(
                     }
                     _ if !is_begun => return Err(content::no_beginning(text, Format::Vtu, "`<VTKFile`")),
                     b"DataArray" => {
-                        let parent = path.last().cloned().unwrap_or_default();
-                        let wanted: [&[u8]; 6] = [b"Points", b"Cells", b"Verts", b"Lines", b"Polys", b"Strips"];
-                        let typed = attribute(&tag, "Name")?.unwrap_or_default().into_bytes();
-                        let mut name = typed.clone();
-                        // CalculiX and others write `U`.
-                        let is_displacement = parent == POINT_DATA
-                            && [DISPLACEMENT, b"u"].iter().any(|other| name.eq_ignore_ascii_case(other))
-                            && attribute(&tag, "NumberOfComponents")?
-                                .is_some_and(|number| matches!(number.trim(), "2" | "3"));
-                        if is_displacement {
-                            name = DISPLACEMENT.to_vec();
-                        }
-                        let is_ghost = (parent == POINT_DATA || parent == CELL_DATA) && GHOSTS.contains(&&*name);
-                        let is_vector =
-                            parent == b"Points" || is_displacement || parent == POINT_DATA && name == VELOCITY;
-                        if wanted.contains(&&*parent) || is_vector || is_ghost {
-                            let scalar = scalar(&attribute(&tag, "type")?.unwrap_or_default())?;
-                            let columns = if is_vector { columns(&tag, &typed, || place(before))? } else { 1 };
-                            let start = reader.buffer_position() as usize;
-                            let place = match attribute(&tag, "format")?.as_deref() {
-                                Some("appended") => {
-                                    let offset =
-                                        attribute(&tag, "offset")?.and_then(|offset| offset.trim().parse().ok());
-                                    Place::Appended(offset.ok_or_else(|| {
-                                        let message = format!("has an array without an offset {}", place(before));
-                                        ReadError::new(message, DAMAGED)
-                                    })?)
-                                }
-                                Some("binary") => Place::Inline(start, start),
-                                Some("ascii") | None => Place::Text(start, start),
-                                Some(other) => {
-                                    let message = format!(
-                                        "has an array of the format {} {}; expected `ascii`, `binary` or `appended`",
-                                        quoted(other.as_bytes()),
-                                        place(before)
-                                    );
-                                    return Err(ReadError::new(message, DAMAGED));
-                                }
-                            };
-                            open = Some((
-                                (parent, name),
-                                Array { name: typed, scalar, columns, at: before as usize, place },
-                            ));
-                            if is_empty {
-                                close(&mut open, &mut piece, start as u64);
-                            }
+                        let places = [before as usize, reader.buffer_position() as usize];
+                        open =
+                            array(&tag, path.last().map_or(&[][..], |parent| &parent[..]), places, || place(before))?;
+                        if is_empty {
+                            close(&mut open, &mut piece, places[1] as u64);
                         }
                     }
                     _ => {}
@@ -235,6 +195,48 @@ fn header(tag: &BytesStart<'_>, layout: &mut Layout<'_>) -> Result<(), ReadError
     }
     layout.packer = attribute(tag, "compressor")?.unwrap_or_default();
     Ok(())
+}
+
+/// An array in an element, if it is read. It begins to be described at the first of two places, and its text begins at the other.
+fn array(
+    tag: &BytesStart<'_>,
+    parent: &[u8],
+    places: [usize; 2],
+    place: impl Fn() -> String,
+) -> Result<Option<(Key, Array)>, ReadError> {
+    let typed = attribute(tag, "Name")?.unwrap_or_default().into_bytes();
+    let is_data = parent == POINT_DATA || parent == CELL_DATA;
+    let name = if is_data {
+        let columns = attribute(tag, "NumberOfComponents")?.and_then(|number| number.trim().parse().ok());
+        match arrays::wanted(&typed, parent == CELL_DATA, columns.unwrap_or(1)) {
+            Some(name) => name.to_vec(),
+            None => return Ok(None),
+        }
+    } else if ELEMENTS.iter().any(|(element, _)| *element == parent) {
+        typed.clone()
+    } else {
+        return Ok(None);
+    };
+    let is_vector = parent == b"Points" || is_data && arrays::is_vector(&name);
+    let scalar = scalar(&attribute(tag, "type")?.unwrap_or_default())?;
+    let columns = if is_vector { columns(tag, &typed, &place)? } else { 1 };
+    let [at, start] = places;
+    let place = match attribute(tag, "format")?.as_deref() {
+        Some("appended") => {
+            let offset = attribute(tag, "offset")?.and_then(|offset| offset.trim().parse().ok());
+            let missing = || ReadError::damaged(format!("has an array without an offset {}", place()));
+            Place::Appended(offset.ok_or_else(missing)?)
+        }
+        Some("binary") => Place::Inline(start, start),
+        Some("ascii") | None => Place::Text(start, start),
+        Some(other) => {
+            let (other, place) = (quoted(other.as_bytes()), place());
+            let message =
+                format!("has an array of the format {other} {place}; expected `ascii`, `binary` or `appended`");
+            return Err(ReadError::damaged(message));
+        }
+    };
+    Ok(Some(((parent.to_vec(), name), Array { name: typed, scalar, columns, at, place })))
 }
 
 /// The number of components of points and vectors: 3, or 2 in the plane.
@@ -289,37 +291,35 @@ impl Layout<'_> {
             })?;
         }
         let count = builder.points() - first as usize;
+        let get = |parent: &[u8], name: &[u8]| piece.get(&(parent.to_vec(), name.to_vec()));
+        let place = |array: &Array| Source::text(self.bytes).place(array.at);
         let vectors = |name: &[u8], expected: &str| -> Result<Option<Vec<DVec3>>, ReadError> {
-            let Some(array) = piece.get(&(POINT_DATA.to_vec(), name.to_vec())) else { return Ok(None) };
+            let Some(array) = get(POINT_DATA, name) else { return Ok(None) };
             let mut vectors = Vec::new();
             self.each(array, &array.name, 3 * limits.points, |source| {
                 vectors.push(vector(array, || source.float(array.scalar, expected))?);
                 Ok(())
             })?;
-            if vectors.len() != count {
-                let (name, found, place) =
-                    (quoted(&array.name), vectors.len(), Source::text(self.bytes).place(array.at));
-                let message =
-                    format!("has {found} vectors in its array {name} {place}; expected {count}, one for each point");
-                return Err(ReadError::new(message, DAMAGED));
-            }
+            arrays::check(&array.name, vectors.len(), count, false, || place(array))?;
             Ok(Some(vectors))
         };
-        vectors(VELOCITY, "a velocity")?.into_iter().for_each(|all| builder.velocities(all));
-        vectors(DISPLACEMENT, "a displacement")?.into_iter().for_each(|all| builder.displacements(all));
-        let get = |parent: &[u8], name: &[u8]| piece.get(&(parent.to_vec(), name.to_vec()));
+        vectors(arrays::VELOCITY, "a velocity")?.into_iter().for_each(|all| builder.velocities(all));
+        let displacement = arrays::displacement(|name| get(POINT_DATA, name).is_some());
+        vectors(displacement, "a displacement")?.into_iter().for_each(|all| builder.displacements(all));
         let integers = |parent: &[u8], name: &[u8]| match get(parent, name) {
             Some(array) => self.integers(array, name, 4 * limits.corners),
             None => Ok(Vec::new()),
         };
-        let ghosts = |parent: &[u8]| -> Result<Vec<bool>, ReadError> {
-            let Some(name) = GHOSTS.into_iter().find(|name| get(parent, name).is_some()) else { return Ok(Vec::new()) };
+        // What tells ghosts, one for each point, and one for each of these cells of the file.
+        let ghosts = |of_cells: bool, expected: usize| -> Result<Vec<Ghost>, ReadError> {
+            let parent = if of_cells { CELL_DATA } else { POINT_DATA };
+            let found = arrays::GHOSTS.into_iter().find_map(|name| Some((name, get(parent, name)?)));
+            let Some((name, array)) = found else { return Ok(Vec::new()) };
             let numbers = integers(parent, name)?;
-            Ok(numbers.iter().map(|&number| kinds::is_ghost(name, number, parent == CELL_DATA)).collect())
+            arrays::check(&array.name, numbers.len(), expected, of_cells, || place(array))?;
+            Ok(numbers.iter().map(|&number| arrays::ghost(name, number, of_cells)).collect())
         };
-        let (points, cells) = (ghosts(POINT_DATA)?, ghosts(CELL_DATA)?);
-        let copies = (first as u32..).zip(&points).filter(|&(_, &is_copy)| is_copy).map(|(point, _)| point);
-        copies.for_each(|point| builder.cells.copies.push(&[point]));
+        builder.ghosts(first as usize, ghosts(false, count)?);
         let polyhedra = Polyhedra {
             streams: integers(b"Cells", b"faces")?,
             ends: integers(b"Cells", b"faceoffsets")?,
@@ -328,9 +328,9 @@ impl Layout<'_> {
             members: integers(b"Cells", b"polyhedron_to_faces")?,
             cells: integers(b"Cells", b"polyhedron_offsets")?,
         };
-        let kinds: [(&[u8], i64); 5] = [(b"Cells", -1), (b"Verts", 2), (b"Lines", 4), (b"Polys", 7), (b"Strips", 6)];
-        let mut number = 0;
-        for (parent, kind) in kinds {
+        // Where the cells begin that each cell of the file becomes.
+        let mut starts = Vec::new();
+        for &(parent, kind) in &ELEMENTS[1..] {
             let [connectivity, offsets, types] =
                 [&b"connectivity"[..], b"offsets", b"types"].map(|name| integers(parent, name));
             let (connectivity, offsets, types) = (connectivity?, offsets?, types?);
@@ -351,8 +351,7 @@ impl Layout<'_> {
                 let kind = if kind < 0 { types[cell] } else { kind };
                 let list = &connectivity[start..end];
                 start = end;
-                builder.is_copy = cells.get(number).is_some_and(|&is_copy| is_copy);
-                number += 1;
+                starts.push(builder.cells.kinds.len());
                 let corner = |builder: &mut Builder<'_>, index: i64| corner(builder, index, first);
                 if kind == 42 {
                     let mut faces = Vec::new();
@@ -369,8 +368,9 @@ impl Layout<'_> {
                 }
             }
         }
-        builder.is_copy = false;
-        kinds::check_ghosts([&points, &cells], [builder.points() - first as usize, number])
+        let ghosts = ghosts(true, starts.len())?;
+        builder.ghosts_of_cells(&starts, &ghosts);
+        Ok(())
     }
 
     /// Counts numbers.

@@ -87,7 +87,6 @@ struct SurfaceSummary {
 struct FlawNames {
     welded: usize,
     near: usize,
-    lost: usize,
     degenerate: usize,
     doubled: usize,
     turned: usize,

@@ -82,11 +82,7 @@ impl<'b> Lists<'b> {
         };
         if let Some(sparse) = accessor.sparse() {
             let (indices, values) = (sparse.indices(), sparse.values());
-            let kind_of_index = match indices.index_type() {
-                gltf::accessor::sparse::IndexType::U8 => DataType::U8,
-                gltf::accessor::sparse::IndexType::U16 => DataType::U16,
-                gltf::accessor::sparse::IndexType::U32 => DataType::U32,
-            };
+            let kind_of_index = [DataType::U8, DataType::U16, DataType::U32][indices.index_type().size() / 2];
             let count = sparse.count().min(most);
             let places = self.rows(&indices.view(), indices.offset(), count, 1, kind_of_index)?;
             let values = self.rows(&values.view(), values.offset(), count, columns, kind)?;

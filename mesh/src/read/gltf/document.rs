@@ -34,11 +34,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
     } else {
         (Cow::Borrowed(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)), None)
     };
-    let root = from_slice::<Root>(&text).or_else(|error| with_nodes(&text).ok_or(error));
-    let root = root.map_err(|error| if is_old(&text) { old() } else { no(error.to_string()) })?;
-    if root.asset.version.starts_with("1.") {
+    let mut value: Value = from_slice(&text).map_err(|error| no(error.to_string()))?;
+    if is_old(&value) {
         return Err(old());
     }
+    // Scenes may leave out their lists of nodes.
+    for scene in value.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
+        if let Some(scene) = scene.as_object_mut() {
+            scene.entry("nodes").or_insert(Value::Array(Vec::new()));
+        }
+    }
+    let root: Root = from_value(value).map_err(|error| no(error.to_string()))?;
     check_extensions(&root)?;
     // The validation looks up the lists of attributes before it checks that they are there.
     let lists = root.accessors.len();
@@ -61,15 +67,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
     }
 }
 
-/// A structure whose scenes have lists of nodes, empty ones where the file leaves them out.
-fn with_nodes(text: &[u8]) -> Option<Root> {
-    let mut value: Value = from_slice(text).ok()?;
-    for scene in value.get_mut("scenes")?.as_array_mut()? {
-        scene.as_object_mut()?.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
-    }
-    from_value(value).ok()
-}
-
 /// Refuses a file that needs what is not read here.
 fn check_extensions(root: &Root) -> Result<(), ReadError> {
     /// Those about looks and data, which change no place of a point, and that for coordinates as integers.
@@ -90,9 +87,8 @@ fn check_extensions(root: &Root) -> Result<(), ReadError> {
     ))
 }
 
-/// Whether a file that is not read as version 2.0 is one of version 1.0, which names things where 2.0 numbers them.
-fn is_old(text: &[u8]) -> bool {
-    let value: Value = from_slice(text).unwrap_or_default();
+/// Whether a file is one of version 1.0, which names things where 2.0 numbers them.
+fn is_old(value: &Value) -> bool {
     let version = value.get("asset").and_then(|asset| asset.get("version")).and_then(|version| version.as_str());
     let are_named = ["meshes", "nodes"].iter().any(|key| value.get(key).is_some_and(Value::is_object));
     are_named || version.is_some_and(|version| version.starts_with('1'))
