@@ -56,27 +56,24 @@ impl Inside {
         } else {
             hiding = simple(&points, &caps);
             all.extend(&caps);
+            if !caps.is_empty() {
+                all = without_sheets(&points, &all);
+            }
         }
         let corners =
             |caps: Vec<[u32; 3]>| caps.into_iter().map(|cap| cap.map(|point| points[point as usize])).collect();
         Self { columns: Columns::new(&points, &all), caps: corners(caps), hiding: Caps::new(corners(hiding)) }
     }
 
-    /// Whether points of a grid lie in several shells of a surface, which is taken to be closed.
-    pub(crate) fn is_several(surface: &Surface, grid: &Grid) -> bool {
-        let columns = Columns::new(&surface.points, &surface.triangles);
-        let closed = Self { columns, caps: Vec::new(), hiding: Caps::new(Vec::new()) };
-        (0..grid.counts[1] * grid.counts[2]).into_par_iter().any(|row| {
-            let mut out = Vec::new();
-            closed.row(grid, row, &mut out);
-            out.iter().any(|&(around, _)| around > 1)
-        })
-    }
-
     /// About how many triangles are looked at to tell whether a point is inside, beside those that a line crosses.
     pub(crate) fn effort(&self) -> f64 {
         let all = self.hiding.triangles.len() as f64;
         all.min(64.0 * libm::log2(all.max(1.0)))
+    }
+
+    /// How many triangles are looked at on average to tell which a line crosses.
+    pub(crate) fn crossed(&self) -> f64 {
+        self.columns.members.len() as f64 / self.columns.starts.len() as f64
     }
 
     /// The triangles that were added to close the surface.
@@ -332,6 +329,34 @@ fn caps(surface: &Surface) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (points, caps)
 }
 
+/// The triangles of those pieces of a closed surface that are not flat. A line crosses a flat one twice at one place, or not at all.
+fn without_sheets(points: &[DVec3], all: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    /// Flat means so flat, as a part of the area.
+    const FLAT: f64 = 1e-12;
+    let mut sets = Sets::new(points.len());
+    all.iter().flat_map(|&[a, b, c]| [(a, b), (a, c)]).for_each(|(one, other)| sets.join(one, other));
+    let (piece_of, count) = sets.numbered();
+    let piece = |of: &[u32; 3]| piece_of[of[0] as usize] as usize;
+    let area = |of: &[u32; 3]| {
+        let [a, b, c] = of.map(|point| points[point as usize]);
+        (b - a).cross(c - a)
+    };
+    // The area of the largest triangle of each piece, and that of all, whole and seen along the normal of the largest.
+    let mut largest = vec![DVec3::ZERO; count];
+    for (piece, area) in all.iter().map(|of| (piece(of), area(of))) {
+        if area.length_squared() > largest[piece].length_squared() {
+            largest[piece] = area;
+        }
+    }
+    let mut areas = vec![[0.0; 2]; count];
+    for (piece, area) in all.iter().map(|of| (piece(of), area(of))) {
+        areas[piece][0] += area.length();
+        areas[piece][1] += area.dot(largest[piece].normalize_or_zero()).abs();
+    }
+    let is_kept = |of: &&[u32; 3]| areas[piece(of)][1] < (1.0 - FLAT) * areas[piece(of)][0];
+    all.iter().filter(is_kept).copied().collect()
+}
+
 /// Fans with one triangle in place of those whose open edges are a straight line, as the parts of an edge are that was divided, and in
 /// place of three that are a triangle.
 fn simple(points: &[DVec3], caps: &[[u32; 3]]) -> Vec<[u32; 3]> {
@@ -440,7 +465,7 @@ impl Caps {
 
     /// The part of the sphere about a point that the triangles hide.
     fn winding(&self, point: DVec3) -> f64 {
-        let (mut sum, mut at) = (0.0, 0);
+        let (mut sum, mut at, mut near) = (0.0, 0, HalfAngle::default());
         while let Some(lump) = self.nodes.get(at) {
             let to = lump.middle - point;
             let distance = to.length();
@@ -449,29 +474,46 @@ impl Caps {
                 sum += to.dot(lump.area) / (distance * distance * distance);
                 at = lump.next;
             } else if lump.next == at + 1 {
-                sum += solid_angle(&self.triangles[lump.range.clone()], point);
+                near.add(&self.triangles[lump.range.clone()], point);
                 at = lump.next;
             } else {
                 at += 1;
             }
         }
-        sum / (4.0 * std::f64::consts::PI)
+        (sum + near.solid_angle()) / (4.0 * std::f64::consts::PI)
     }
 }
 
-/// The solid angle of triangles seen from a point, positive from behind. Their half angles are those of vectors in a plane, which are
-/// turned by each other: one arc tangent is enough.
-fn solid_angle(triangles: &[[DVec3; 3]], point: DVec3) -> f64 {
-    let (mut sum, mut turns) = (DVec2::X, 0.0);
-    for half in triangles.iter().filter_map(|triangle| half_angle(triangle, point)) {
-        let next = sum.rotate(half);
-        let [was_left, turns_left, is_left] = [sum, half, next].map(|vector| vector.y >= 0.0);
-        if was_left == turns_left && is_left != was_left {
-            turns += if turns_left { 1.0 } else { -1.0 };
-        }
-        sum = next;
+/// Half the solid angle of triangles seen from a point, positive from behind: a vector in a plane that each triangle turns by its own, so
+/// that one arc tangent is enough, and its whole turns.
+struct HalfAngle {
+    vector: DVec2,
+    turns: f64,
+}
+
+impl Default for HalfAngle {
+    fn default() -> Self {
+        Self { vector: DVec2::X, turns: 0.0 }
     }
-    2.0 * (libm::atan2(sum.y, sum.x) + std::f64::consts::TAU * turns)
+}
+
+impl HalfAngle {
+    /// Adds a few triangles, whose vectors are lengths to the third power.
+    fn add(&mut self, triangles: &[[DVec3; 3]], point: DVec3) {
+        for half in triangles.iter().filter_map(|triangle| half_angle(triangle, point)) {
+            let next = self.vector.rotate(half);
+            let [was_left, turns_left, is_left] = [self.vector, half, next].map(|vector| vector.y >= 0.0);
+            if was_left == turns_left && is_left != was_left {
+                self.turns += if turns_left { 1.0 } else { -1.0 };
+            }
+            self.vector = next;
+        }
+        self.vector = self.vector.normalize_or(DVec2::X);
+    }
+
+    fn solid_angle(&self) -> f64 {
+        2.0 * (libm::atan2(self.vector.y, self.vector.x) + std::f64::consts::TAU * self.turns)
+    }
 }
 
 /// A vector at the angle of half the solid angle of a triangle (A. van Oosterom and J. Strackee, 1983). There is none on the plane of the
@@ -579,6 +621,12 @@ mod tests {
         assert_eq!(Inside::new(&surface).hiding.triangles.len(), 1);
     }
 
+    fn solid_angle(triangle: [DVec3; 3], point: DVec3) -> f64 {
+        let mut half = HalfAngle::default();
+        half.add(&[triangle], point);
+        half.solid_angle()
+    }
+
     #[test]
     fn points_are_inside_where_the_winding_number_says_so() {
         let mut noise = Noise(7);
@@ -594,7 +642,7 @@ mod tests {
             let mut unclear = 0;
             for _ in 0..2000 {
                 let point = noise.vector() * 2.0 - 0.5;
-                let direct: f64 = caps.triangles.iter().map(|&triangle| solid_angle(&[triangle], point)).sum();
+                let direct: f64 = caps.triangles.iter().map(|&triangle| solid_angle(triangle, point)).sum();
                 let direct = direct / (4.0 * std::f64::consts::PI);
                 let lumped = caps.winding(point);
                 assert!((lumped - direct).abs() < 0.03, "{lumped} {direct}");

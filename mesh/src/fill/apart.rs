@@ -2,7 +2,7 @@
 
 use super::embed::pieces;
 use super::lattice::too_many;
-use super::{Cage, FillError, Filled, cubes};
+use super::{Cage, FillError, Filled};
 use crate::Surface;
 use crate::edges::Sets;
 use glam::DVec3;
@@ -20,14 +20,12 @@ pub(super) fn fill(
     most: usize,
     fill: impl Fn(Surface) -> Result<Filled, FillError> + Sync,
 ) -> Result<Filled, FillError> {
-    let fill = |part: Surface| -> Result<Filled, FillError> {
-        let mut filled = fill(part)?;
-        filled.cage.overlap = cubes::overlap_of(&filled, side, most)?;
-        Ok(filled)
-    };
-    let (part_of, count) = parts(&surface);
+    let (part_of, count) = parts(&surface)?;
     if count < 2 {
         return fill(surface);
+    }
+    if count > most {
+        return Err(too_many(&surface.measures(), side, count as f64, most, "at least "));
     }
     let mut parts = vec![Surface::default(); count];
     let mut numbers = Vec::with_capacity(surface.points.len());
@@ -87,19 +85,33 @@ fn volumes(part: &Filled) -> Vec<f64> {
 
 /// The part of the surface to which each point belongs, and how many there are: pieces whose boxes meet are one part. What
 /// encloses nothing, as a sheet does, goes with the nearest part.
-fn parts(surface: &Surface) -> (Vec<u32>, usize) {
+///
+/// # Errors
+/// If very many boxes lie side by side.
+fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
     let (piece_of, count) = pieces(surface);
     let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
     for (&piece, &point) in piece_of.iter().zip(&surface.points) {
         let (low, high) = &mut boxes[piece as usize];
         (*low, *high) = (low.min(point), high.max(point));
     }
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|&one, &other| boxes[one].0.x.total_cmp(&boxes[other].0.x));
+    // Pairs of boxes are compared that meet along the axis along which the fewest do.
+    let sorted = |axis: usize| {
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|&one, &other| boxes[one].0[axis].total_cmp(&boxes[other].0[axis]));
+        let end = |&one: &usize| order.partition_point(|&other| boxes[other].0[axis] <= boxes[one].1[axis]);
+        let ends: Vec<usize> = order.iter().map(end).collect();
+        let pairs: usize = (1..).zip(&ends).map(|(at, end)| end - at).sum();
+        (pairs, order, ends)
+    };
+    let [x, y, z] = [0, 1, 2].map(sorted);
+    let fewer = |one: (usize, _, _), other: (usize, _, _)| if other.0 < one.0 { other } else { one };
+    let (pairs, order, ends) = fewer(fewer(x, y), z);
+    check(count, pairs)?;
     let mut sets = Sets::new(count);
     for (at, &one) in order.iter().enumerate() {
         let (low, high) = boxes[one];
-        for &other in order[at + 1..].iter().take_while(|&&other| boxes[other].0.x <= high.x) {
+        for &other in &order[at + 1..ends[at]] {
             if boxes[other].0.cmple(high).all() && boxes[other].1.cmpge(low).all() {
                 sets.join(one as u32, other as u32);
             }
@@ -114,6 +126,7 @@ fn parts(surface: &Surface) -> (Vec<u32>, usize) {
     let enclosed = surface.enclosed(&of_triangles, count);
     let (solid, empty): (Vec<usize>, Vec<usize>) =
         (0..count).filter(|&set| set_of[set] as usize == set).partition(|&set| enclosed[set].is_solid());
+    check(count, empty.len() * solid.len())?;
     for set in empty {
         let (low, high) = boxes[set];
         let gap = |other: usize| (boxes[other].0 - high).max(low - boxes[other].1).max(DVec3::ZERO).length_squared();
@@ -121,5 +134,37 @@ fn parts(surface: &Surface) -> (Vec<u32>, usize) {
         sets.join(set as u32, nearest.unwrap_or(0) as u32);
     }
     let (part_of, count) = sets.numbered();
-    (piece_of.into_iter().map(|piece| part_of[piece as usize]).collect(), count)
+    Ok((piece_of.into_iter().map(|piece| part_of[piece as usize]).collect(), count))
+}
+
+/// Refuses more comparisons of pieces than take some seconds.
+fn check(pieces: usize, pairs: usize) -> Result<(), FillError> {
+    const MOST: usize = 1_000_000_000;
+    if pairs <= MOST {
+        return Ok(());
+    }
+    let message = format!("has {pieces} pieces that overlap along each axis, too many to tell which stand apart");
+    Err(FillError::new(message, "unite them in the program that made it, or fill it with cubes"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn very_many_pieces_over_each_other_are_refused() {
+        let pieces = |count: u32, apart: f64| {
+            let points =
+                (0..count).flat_map(|at| [DVec3::X, DVec3::Y, DVec3::Z].map(|point| point + apart * f64::from(at)));
+            let triangles = (0..count).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect();
+            parts(&Surface { points: points.collect(), triangles, ..Surface::default() })
+        };
+        let refused = pieces(50_000, 1e-6).unwrap_err();
+        assert_eq!(
+            refused.message,
+            "has 50000 pieces that overlap along each axis, too many to tell which stand apart"
+        );
+        // Sheets go with the first.
+        assert_eq!(pieces(50_000, 2.0).map(|(_, count)| count).ok(), Some(1));
+    }
 }

@@ -3,12 +3,11 @@
 use super::clip::{self, Piece};
 use super::graded::{self, Graded};
 use super::lattice::{CORNERS, Cell, JOINED, Lattice, Nodes, corner, too_many};
-use super::parts::{Parted, Parts, Scene};
+use super::parts::{Parted, Parts, Patches, Scene};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::DVec3;
-use localshape_sim::geometry::bounds;
 use localshape_sim::{IndexLists, Weights};
 use rayon::prelude::*;
 
@@ -73,7 +72,7 @@ pub(super) fn fill(
 }
 
 /// How much more volume the shells of a closed surface have together than its inside, in cells. What is less than round-off may be is 0.
-fn overlap(scene: &Scene, cells: &[Parted]) -> f64 {
+pub(super) fn overlap(scene: &Scene, cells: &[Parted]) -> f64 {
     if !scene.inside.caps().is_empty() {
         return 0.0;
     }
@@ -82,25 +81,6 @@ fn overlap(scene: &Scene, cells: &[Parted]) -> f64 {
     let volume: f64 = scene.pieces.iter().map(volume).sum();
     let overlap = volume - cells.iter().map(|parted| parted.full.filled).sum::<f64>();
     if overlap > 1e-6 * volume { overlap } else { 0.0 }
-}
-
-/// How much more volume the shells of a filled surface have together than its inside (m³). Where a single one passes through itself,
-/// that is seen if it does so by more than two sides.
-pub(super) fn overlap_of(filled: &Filled, side: f64, most: usize) -> Result<f64, FillError> {
-    let (low, high) = bounds(&filled.surface.points);
-    let counts = (0.5 * (high - low) / side).ceil().max(DVec3::ONE).as_usizevec3().to_array();
-    let grid = Grid { first: low + side, side: 2.0 * side, counts };
-    if filled.flaws.pieces == 1 && !Inside::is_several(&filled.surface, &grid) {
-        return Ok(0.0);
-    }
-    let (lattice, scaled) = Lattice::about(&mut filled.surface.clone(), side, most)?;
-    let inside = Inside::new(&scaled);
-    if !inside.caps().is_empty() {
-        return Ok(0.0);
-    }
-    let pieces = clip::pieces(&scaled, &lattice);
-    let scene = Scene::new(&scaled, &lattice, &inside, &pieces);
-    Ok(overlap(&scene, &cells(&scene, &filled.flaws)?) * side * side * side)
 }
 
 /// The filled parts of elements, unless all are full.
@@ -123,17 +103,36 @@ pub(super) fn cells(scene: &Scene, flaws: &Flaws) -> Result<Vec<Parted>, FillErr
     let capped = clip::pieces(&caps, scene.lattice);
     check_effort(scene, flaws, &capped)?;
     let rows = (0..scene.lattice.counts[1] * scene.lattice.counts[2]).into_par_iter();
-    let cells: Vec<_> = rows.flat_map_iter(|row| row_cells(scene, row, &capped)).collect();
+    let begun: Vec<_> = rows.flat_map_iter(|row| row_cells(scene, row, &capped)).collect();
+    check_shells(scene, &begun)?;
+    let parted = |(whole, patches): (Parted, Option<Patches>)| match patches {
+        Some(patches) => scene.parted(whole, &patches),
+        None => whole,
+    };
+    let cells: Vec<_> = begun.into_par_iter().map(parted).collect();
     if cells.iter().all(|parted| parted.full.filled <= LEAST) {
         return Err(no_inside(flaws));
     }
     Ok(cells)
 }
 
+/// The most triangles that are looked at: for some minutes.
+const MOST: f64 = 3e10;
+
+/// Refuses shells of which too many lie over each other in single cells.
+fn check_shells(scene: &Scene, begun: &[(Parted, Option<Patches>)]) -> Result<(), FillError> {
+    let all = || begun.iter().filter_map(|(_, patches)| patches.as_ref());
+    if all().map(|patches| patches.effort(scene.inside)).sum::<f64>() <= MOST {
+        return Ok(());
+    }
+    let patches: usize = all().map(Patches::count).sum();
+    let message =
+        format!("has {patches} separate parts of its surface in single cells, too many to tell what each bounds");
+    Err(FillError::new(message, "unite its shells in the program that made it, or use a larger side"))
+}
+
 /// Refuses an open surface of which too many points had to be tried.
 fn check_effort(scene: &Scene, flaws: &Flaws, capped: &[Piece]) -> Result<(), FillError> {
-    /// The most triangles that are looked at: for some minutes.
-    const MOST: f64 = 3e10;
     let count = |pieces: &[Piece]| pieces.chunk_by(|one, other| one.cell == other.cell).count();
     let tried = if capped.is_empty() { 0 } else { count(scene.pieces) + count(capped) };
     if (tried * SAMPLES * SAMPLES * SAMPLES) as f64 * scene.inside.effort() <= MOST {
@@ -150,7 +149,7 @@ pub(super) fn bounded(part: f64) -> f64 {
 }
 
 /// The cells of one row.
-fn row_cells(scene: &Scene, row: usize, capped: &[Piece]) -> Vec<Parted> {
+fn row_cells<'s>(scene: &Scene<'s>, row: usize, capped: &'s [Piece]) -> Vec<(Parted, Option<Patches<'s>>)> {
     let Scene { inside, lattice, pieces, .. } = *scene;
     let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
     let along = grid.counts[0];
@@ -173,9 +172,9 @@ fn row_cells(scene: &Scene, row: usize, capped: &[Piece]) -> Vec<Parted> {
             } else {
                 sampled(inside, &grid, key)
             };
-            cells.push(scene.parted(key as u64, own, bounded(filled), is_clear));
+            cells.push(scene.begun(own, bounded(filled), is_clear));
         } else if is_inside {
-            cells.push(Parted::whole(key as u64));
+            cells.push((Parted::whole(key as u64), None));
         }
         shadow += own.iter().chain(own_caps).map(|piece| piece.shadow).sum::<f64>();
     }

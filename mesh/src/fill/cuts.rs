@@ -142,21 +142,26 @@ impl Lattice {
         (lattice, Surface { points, triangles: self.surface.triangles.clone(), ..Surface::default() })
     }
 
-    /// The part of each cube that is inside, with x fastest, then y, then z.
+    /// The part of each cube that is inside, with x fastest, then y, then z, and the volume that lies in several shells (m³).
     ///
     /// # Errors
     /// If nothing is inside.
-    pub(super) fn filled(&self, flaws: &Flaws) -> Result<Vec<f64>, FillError> {
+    pub(super) fn filled(&self, flaws: &Flaws) -> Result<(Vec<f64>, f64), FillError> {
         let (lattice, scaled) = self.in_cubes();
         let (inside, pieces) = (Inside::new(&scaled), clip::pieces(&scaled, &lattice));
-        let scene = if flaws.pieces == 1 { Scene::joined } else { Scene::new };
-        let cells = cubes::cells(&scene(&scaled, &lattice, &inside, &pieces), flaws)?;
+        let scene = Scene::new(&scaled, &lattice, &inside, &pieces);
+        let cells = cubes::cells(&scene, flaws)?;
         let mut filled = vec![0.0; self.cubes.as_usizevec3().element_product()];
-        for Parted { full, .. } in cells {
+        for Parted { full, .. } in &cells {
             let cube = IVec3::from_array(lattice.cell(full.cell).map(|at| at as i32 + 1));
             filled[self.cube(cube)] = full.filled;
         }
-        Ok(filled)
+        Ok((filled, cubes::overlap(&scene, &cells) * self.side * self.side * self.side))
+    }
+
+    /// Whether the surface is closed.
+    pub(super) fn is_closed(&self) -> bool {
+        self.inside.caps().is_empty()
     }
 
     /// The place of a cube in lists.

@@ -25,6 +25,9 @@ const VERY_FAR: f64 = 2.0;
 /// The most times elements are made again with more of the lattice. Scans need two, and steps grow from one to the next.
 const ROUNDS: u32 = 16;
 
+/// After so many rounds without fewer places that are not carried, more of the lattice does not help.
+const PATIENCE: u32 = 3;
+
 /// An element is filled at least by this part.
 pub(super) const LEAST: f64 = 1e-3;
 
@@ -52,11 +55,12 @@ pub(super) fn carry(
 ) -> Result<(Cage, Weights), FillError> {
     let (pieces, _) = pieces(surface);
     let mut wide = vec![0u8; lattice.len()];
-    let mut inside: Option<Vec<f64>> = None;
+    // Shells of a closed surface may lie in each other.
+    let mut inside = if lattice.is_closed() { Some(lattice.filled(flaws)?) } else { None };
     let mut touched = Vec::new();
-    let (mut round, mut is_bold) = (0, true);
+    let (mut round, mut is_bold, mut fewest) = (0, true, (usize::MAX, 0));
     while round < ROUNDS {
-        let draft = build(&wide, is_bold, inside.as_deref())?;
+        let draft = build(&wide, is_bold, inside.as_ref().map(|(inside, _)| &inside[..]))?;
         let body = body(&draft.cage);
         let fan = Fan::new(&body);
         let found = fan.locate(&surface.points, lattice.side, VERY_FAR);
@@ -73,13 +77,21 @@ pub(super) fn carry(
         let (places, of_places): (Vec<DVec3>, Vec<u32>) =
             surface.triangles.iter().filter(has_lost).flat_map(samples).unzip();
         if places.is_empty() {
-            let filled = inside.and_then(|inside| fan.filled(&draft.is_wide, lattice, &inside));
-            return Ok(hung.finished(draft.cage, filled, &fan, &found));
+            let (inside, overlap) = inside.unwrap_or_default();
+            let filled = fan.filled(&draft.is_wide, lattice, &inside);
+            let (cage, weights) = hung.finished(draft.cage, filled, &fan, &found);
+            return Ok((Cage { overlap, ..cage }, weights));
         }
         if inside.is_none() {
             inside = Some(lattice.filled(flaws)?);
         }
-        let inside = inside.as_deref().unwrap_or_default();
+        let inside = inside.as_ref().map_or(&[][..], |(inside, _)| &inside[..]);
+        // Triangles that lie about at random hang together by no elements.
+        if places.len() < fewest.0 {
+            fewest = (places.len(), round);
+        } else if round > fewest.1 + PATIENCE {
+            break;
+        }
         // What was left out may be missing.
         is_bold = !(draft.is_bold && round > 1);
         if !is_bold {
@@ -352,6 +364,9 @@ impl Fan {
     /// The part of each element that is filled. What is inside a cube of the lattice, less the elements there that are not wide, fills
     /// its wide ones evenly.
     fn filled(&self, is_wide: &[bool], lattice: &Lattice, inside: &[f64]) -> Option<Vec<f64>> {
+        if !is_wide.contains(&true) {
+            return None;
+        }
         let cube = lattice.side * lattice.side * lattice.side;
         // The cubes in which an element lies, and the volume there, in cubes.
         let shares = |element: usize| {
@@ -388,7 +403,7 @@ impl Fan {
         let missing = thin.map(|cube| inside[cube] - full[cube]).sum::<f64>() - filled;
         let more = if missing > CLOSE { (missing / room).min(1.0) } else { 0.0 };
         let part = |[filled, all]: [f64; 2]| ((filled + more * (all - filled)) / all).clamp(LEAST, 1.0);
-        is_wide.contains(&true).then(|| parts.into_iter().map(|of| of.map_or(1.0, part)).collect())
+        Some(parts.into_iter().map(|of| of.map_or(1.0, part)).collect())
     }
 
     /// The nodes of the element of a place and the weight of each: the least that reproduce affine maps. They are gentle also where a

@@ -15,6 +15,9 @@ use crate::edges::{EdgeUse, Sets, net};
 use crate::inside::Inside;
 use glam::DVec3;
 
+/// Volumes below this are round-off, in cells.
+const CLOSE: f64 = 1e-9;
+
 /// Cells and their copies.
 pub(super) struct Parts {
     /// The cell of each copy and the part of it that is inside, by cell.
@@ -31,8 +34,7 @@ pub(super) struct Scene<'s> {
     pub(super) lattice: &'s Lattice,
     pub(super) inside: &'s Inside,
     pub(super) pieces: &'s [Piece],
-    /// `None` if cells are taken to have one part, of a shell that no other one meets.
-    edges: Option<Edges>,
+    edges: Edges,
 }
 
 /// A cell with a part of the inside.
@@ -50,6 +52,29 @@ impl Parted {
     }
 }
 
+/// The pieces of a surface in a cell, and what of them shared edges hold together.
+pub(super) struct Patches<'s> {
+    pieces: &'s [Piece],
+    /// The patch of each piece.
+    of: Vec<u32>,
+    count: usize,
+    /// Whether more than two pieces meet in an edge.
+    folded: bool,
+    /// Whether the volume of the inside is known, and not only tried at points.
+    certain: bool,
+}
+
+impl Patches<'_> {
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// About how often it is asked whether a line meets a triangle to tell what the patches bound.
+    pub(super) fn effort(&self, inside: &Inside) -> f64 {
+        Tangle::effort(self.pieces.len(), inside) + Sight::effort(self.pieces.len(), self.count)
+    }
+}
+
 /// The parts of the inside in one cell.
 #[derive(Clone, Debug)]
 struct Local {
@@ -57,7 +82,7 @@ struct Local {
     part_of: Vec<u32>,
     /// The volume of each part, in cells.
     volumes: Vec<f64>,
-    /// The part at the middle of each face, if one is there: low and high along x, y and z. Known for several parts only.
+    /// The part at the middle of each face, if one is there: low and high along x, y and z. Of a single part it is not tried.
     faces: [Option<u32>; 6],
     /// Whether the surface is open in the cell, so that it has one part.
     open: bool,
@@ -65,7 +90,7 @@ struct Local {
 
 impl Local {
     fn whole(pieces: usize, volume: f64, open: bool) -> Self {
-        Self { part_of: vec![0; pieces], volumes: vec![volume], faces: [None; 6], open }
+        Self { part_of: vec![0; pieces], volumes: vec![volume], faces: [Some(0); 6], open }
     }
 }
 
@@ -114,12 +139,7 @@ fn passes(from: DVec3, to: DVec3, low: DVec3, high: DVec3) -> bool {
 
 impl<'s> Scene<'s> {
     pub(super) fn new(scaled: &'s Surface, lattice: &'s Lattice, inside: &'s Inside, pieces: &'s [Piece]) -> Self {
-        Self { scaled, lattice, inside, pieces, edges: Some(Edges::new(scaled)) }
-    }
-
-    /// The same scene with one part in each cell, if the surface is a single piece.
-    pub(super) fn joined(scaled: &'s Surface, lattice: &'s Lattice, inside: &'s Inside, pieces: &'s [Piece]) -> Self {
-        Self { scaled, lattice, inside, pieces, edges: None }
+        Self { scaled, lattice, inside, pieces, edges: Edges::new(scaled) }
     }
 
     fn corners(&self, piece: &Piece) -> [DVec3; 3] {
@@ -129,41 +149,43 @@ impl<'s> Scene<'s> {
     /// The numbers of the edges of a piece's triangle that pass a box.
     fn edges_in(&self, piece: &Piece, low: DVec3, high: DVec3) -> impl Iterator<Item = u32> {
         let corners = self.corners(piece);
-        let numbers = self.edges.iter().flat_map(|edges| edges.of[piece.triangle as usize]).enumerate();
+        let numbers = self.edges.of[piece.triangle as usize].into_iter().enumerate();
         numbers.filter(move |&(at, _)| passes(corners[at], corners[(at + 1) % 3], low, high)).map(|(_, number)| number)
     }
 
-    /// A cell with a surface in it: its parts. The volume of its inside, in cells, is that of them all, unless shells cross or lie in
-    /// each other. `certain` says whether it is known, and not only tried at points.
-    pub(super) fn parted(&self, cell: u64, pieces: &[Piece], volume: f64, certain: bool) -> Parted {
-        let local = self.local(pieces, volume, certain);
-        Parted { full: Full { cell, filled: local.volumes.iter().sum() }, local: Some(local) }
-    }
-
-    fn local(&self, pieces: &[Piece], volume: f64, certain: bool) -> Local {
-        let count = pieces.len();
-        let Some(edges) = &self.edges else { return Local::whole(count, volume, false) };
-        let low = corner(self.lattice.cell(pieces[0].cell));
+    /// A cell with a surface in it as if it had one part, and its patches if they may bound several, or if shells may cross in it. The
+    /// volume of its inside, in cells, is that of all parts, unless shells cross or lie in each other. `certain` says whether it is
+    /// known, and not only tried at points.
+    pub(super) fn begun(&self, pieces: &'s [Piece], volume: f64, certain: bool) -> (Parted, Option<Patches<'s>>) {
+        let (cell, count) = (pieces[0].cell, pieces.len());
+        let low = corner(self.lattice.cell(cell));
         let mut shared: Vec<(u32, u32)> = Vec::with_capacity(3 * count);
         for (at, piece) in (0..).zip(pieces) {
             shared.extend(self.edges_in(piece, low, low + 1.0).map(|edge| (edge, at)));
         }
-        if shared.iter().any(|&(edge, _)| edges.open[edge as usize]) {
-            return Local::whole(count, volume, true);
+        let open = shared.iter().any(|&(edge, _)| self.edges.open[edge as usize]);
+        let whole = Parted { full: Full { cell, filled: volume }, local: Some(Local::whole(count, volume, open)) };
+        if open {
+            return (whole, None);
         }
         shared.sort_unstable();
         let mut patches = Sets::new(count);
         shared.windows(2).filter(|pair| pair[0].0 == pair[1].0).for_each(|pair| patches.join(pair[0].1, pair[1].1));
         let folded = shared.windows(3).any(|uses| uses[0].0 == uses[2].0);
-        let (patch_of, number) = patches.numbered();
-        if number == 1 && !folded {
-            return Local::whole(count, volume, false);
-        }
+        let (of, count) = patches.numbered();
+        (whole, (count > 1 || folded).then_some(Patches { pieces, of, count, folded, certain }))
+    }
+
+    /// The parts of a cell that its patches bound.
+    pub(super) fn parted(&self, whole: Parted, patches: &Patches) -> Parted {
+        let Full { cell, filled: volume } = whole.full;
+        let &Patches { pieces, of: ref patch_of, count, folded, certain } = patches;
+        let low = corner(self.lattice.cell(cell));
         let facets: Vec<_> = pieces.iter().map(|piece| Facet::new(self.corners(piece), low)).collect();
-        let tangle = if certain { Tangle::new(self.inside, &facets, &patch_of, folded) } else { None };
-        let seen = Sight::new(&facets, &patch_of, low, tangle.as_ref()).parts(number);
+        let tangle = if certain { Tangle::new(self.inside, &facets, patch_of, folded) } else { None };
+        let seen = Sight::new(&facets, patch_of, low, tangle.as_ref()).parts(count);
         if seen.count == 1 && tangle.is_none() {
-            return Local::whole(count, volume, false);
+            return whole;
         }
         let mut volumes = vec![0.0; seen.count];
         match &tangle {
@@ -179,16 +201,19 @@ impl<'s> Scene<'s> {
         volumes.iter_mut().for_each(|volume| *volume = bounded(*volume));
         let sum: f64 = volumes.iter().sum();
         if tangle.is_none() && (sum - volume).abs() > 1e-6 * volume {
-            // The surface is open nearby, or a part was not seen as one.
+            if certain && (sum - volume).abs() > CLOSE {
+                // A part was not seen as one. Together they have the volume that is known.
+                return whole;
+            }
+            // The surface is open nearby.
             volumes.iter_mut().for_each(|own| *own *= volume / sum);
         }
-        Local { part_of: seen.part_of, volumes, faces: seen.faces, open: false }
+        let full = Full { cell, filled: volumes.iter().sum() };
+        Parted { full, local: Some(Local { part_of: seen.part_of, volumes, faces: seen.faces, open: false }) }
     }
 
     /// Adds a whole cell to the part that contains the highest corner of the cell, if one does. Its volume is known but for this one.
     fn give_corner(&self, volumes: &mut [f64], corner: DVec3) {
-        /// Volumes below this are round-off.
-        const CLOSE: f64 = 1e-9;
         // A little inside of the cell, and in no plane that a user would choose.
         let beside = corner - 1e-7 * DVec3::new(1.0, 2.3, 3.7);
         let Some(least) = volumes.iter_mut().min_by(|one, other| one.total_cmp(other)) else { return };
@@ -258,62 +283,48 @@ impl<'s> Scene<'s> {
     /// The parts of two neighbours that are one beyond their common face: the lower face of the cell `above` across an
     /// axis.
     fn links(&self, pieces: [&[Piece]; 2], locals: [Option<&Local>; 2], above: Cell, axis: usize) -> Vec<[u32; 2]> {
-        let [Some(here), Some(there)] = locals else {
-            // A cell without surface is full, and so is the face.
-            let face = |local: Option<&Local>, face: usize| match local {
-                Some(local) if local.volumes.len() > 1 => local.faces[face],
-                _ => Some(0),
-            };
-            let parts = [face(locals[0], 2 * axis + 1), face(locals[1], 2 * axis)];
-            return match parts {
-                [Some(here), Some(there)] if !self.is_walled(pieces, above, axis) => vec![[here, there]],
-                _ => Vec::new(),
-            };
-        };
-        // Triangles that pass the face.
         let mut links = Vec::new();
-        let mut rest = 0;
-        for (at, piece) in pieces[0].iter().enumerate() {
-            rest += pieces[1][rest..].partition_point(|other| other.triangle < piece.triangle);
-            if pieces[1].get(rest).is_some_and(|other| other.triangle == piece.triangle) {
-                links.push([here.part_of[at], there.part_of[rest]]);
-            }
-        }
-        // Triangles that meet at an edge in the face.
         let low = corner(above);
-        let mut high = low + 1.0;
-        high[axis] = low[axis];
-        let in_face = |which: usize| {
-            let numbered = (0usize..).zip(pieces[which]);
-            let mut found: Vec<_> = numbered
-                .filter(|(_, piece)| {
-                    let corners = self.corners(piece);
-                    corners.iter().filter(|corner| corner[axis] == low[axis]).count() >= 2
-                })
-                .flat_map(|(at, piece)| self.edges_in(piece, low, high).map(move |edge| (edge, at)))
-                .collect();
-            found.sort_unstable();
-            found
-        };
-        let (one_side, other_side) = (in_face(0), in_face(1));
-        for &(edge, at) in &one_side {
-            let start = other_side.partition_point(|&(other, _)| other < edge);
-            let same = other_side[start..].iter().take_while(|&&(other, _)| other == edge);
-            links.extend(same.map(|&(_, place)| [here.part_of[at], there.part_of[place]]));
-        }
-        if links.is_empty() && !self.is_walled(pieces, above, axis) {
-            let mut middle = low + 0.5;
-            middle[axis] = low[axis];
-            let is_single = |local: &Local| local.volumes.len() == 1;
-            let is_full = if is_single(here) && is_single(there) {
-                here.open || there.open || self.inside.contains(middle)
-            } else {
-                true
-            };
-            let face = |local: &Local, face: usize| if is_single(local) { Some(0) } else { local.faces[face] };
-            if let (true, Some(one), Some(other)) = (is_full, face(here, 2 * axis + 1), face(there, 2 * axis)) {
-                links.push([one, other]);
+        if let [Some(here), Some(there)] = locals {
+            // Triangles that pass the face.
+            let mut rest = 0;
+            for (at, piece) in pieces[0].iter().enumerate() {
+                rest += pieces[1][rest..].partition_point(|other| other.triangle < piece.triangle);
+                if pieces[1].get(rest).is_some_and(|other| other.triangle == piece.triangle) {
+                    links.push([here.part_of[at], there.part_of[rest]]);
+                }
             }
+            // Triangles that meet at an edge in the face.
+            let mut high = low + 1.0;
+            high[axis] = low[axis];
+            let in_face = |piece: &Piece| self.corners(piece).iter().filter(|at| at[axis] == low[axis]).count() >= 2;
+            let edges = |pieces: &[Piece]| {
+                let numbered = (0usize..).zip(pieces).filter(|(_, piece)| in_face(piece));
+                let mut found: Vec<_> = numbered
+                    .flat_map(|(at, piece)| self.edges_in(piece, low, high).map(move |edge| (edge, at)))
+                    .collect();
+                found.sort_unstable();
+                found
+            };
+            let (one_side, other_side) = (edges(pieces[0]), edges(pieces[1]));
+            for &(edge, at) in &one_side {
+                let start = other_side.partition_point(|&(other, _)| other < edge);
+                let same = other_side[start..].iter().take_while(|&&(other, _)| other == edge);
+                links.extend(same.map(|&(_, place)| [here.part_of[at], there.part_of[place]]));
+            }
+        }
+        // What is at the middle of the face. A cell without surface is full, and so is its face.
+        let is_full = || match locals {
+            [Some(here), Some(there)] if here.volumes.len() == 1 && there.volumes.len() == 1 => {
+                let mut middle = low + 0.5;
+                middle[axis] = low[axis];
+                here.open || there.open || self.inside.contains(middle)
+            }
+            _ => true,
+        };
+        if links.is_empty() && !self.is_walled(pieces, above, axis) && is_full() {
+            let face = |which: usize| locals[which].map_or(Some(0), |local| local.faces[2 * axis + 1 - which]);
+            links.extend(face(0).zip(face(1)).map(|(one, other)| [one, other]));
         }
         links.sort_unstable();
         links.dedup();

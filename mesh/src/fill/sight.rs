@@ -47,8 +47,9 @@ pub(super) struct Sight<'f> {
     low: DVec3,
     /// The shells that cross or lie in each other.
     tangle: Option<&'f Tangle>,
-    /// Whether each facet bounds the inside, at least in part.
+    /// Whether each facet bounds the inside, at least in part; and the facets that do.
     is_seen: Vec<bool>,
+    seen: Vec<usize>,
 }
 
 /// The parts of the inside that patches bound.
@@ -64,6 +65,8 @@ pub(super) struct Seen {
 const NEAR: f64 = 1e-9;
 /// Places of points along each side of a cell that look for patches. Those beside faces stand for them.
 const LOOKOUTS: [f64; 3] = [1e-3, 0.5, 1.0 - 1e-3];
+/// Those beside the middles of faces: low and high along x, y and z.
+const FACES: [usize; 6] = [12, 14, 10, 16, 4, 22];
 /// From so many pieces of a patch it is looked inwards.
 const LOOKS: usize = 8;
 
@@ -73,14 +76,21 @@ impl<'f> Sight<'f> {
         for fragment in tangle.iter().flat_map(|tangle| &tangle.fragments) {
             is_seen[fragment.facet] |= fragment.bounding != 0.0;
         }
-        Self { facets, patch_of, low, tangle, is_seen }
+        let seen = (0..facets.len()).filter(|&at| is_seen[at]).collect();
+        Self { facets, patch_of, low, tangle, is_seen, seen }
+    }
+
+    /// About how often a line is tried with a facet to find the parts that so many patches bound.
+    pub(super) fn effort(facets: usize, patches: usize) -> f64 {
+        let (facets, patches) = (facets as f64, patches as f64);
+        facets * (LOOKS as f64 * patches + 27.0 * patches + 0.5 * patches * patches)
     }
 
     /// The nearest facet along a line, up to its end, apart from one.
     fn first(&self, from: DVec3, along: DVec3, apart: usize) -> Option<usize> {
         let near = NEAR / along.length();
-        let hits = self.facets.iter().enumerate().filter(|&(at, _)| at != apart && self.is_seen[at]);
-        let hits = hits.filter_map(|(at, facet)| facet.hit(from, along).map(|hit| (hit, at)));
+        let hits = self.seen.iter().copied().filter(|&at| at != apart);
+        let hits = hits.filter_map(|at| self.facets[at].hit(from, along).map(|hit| (hit, at)));
         let hits = hits.filter(|&(hit, _)| hit > near && hit < 1.0 + near);
         hits.reduce(|best, other| if other.0 < best.0 { other } else { best }).map(|(_, at)| at)
     }
@@ -138,29 +148,39 @@ impl<'f> Sight<'f> {
             }
         }
         let mut is_inside = vec![false; lookouts.len()];
-        for (place, &from) in lookouts.iter().enumerate() {
-            let sights: Vec<usize> = targets
-                .iter()
-                .filter_map(|&target| self.first(from, self.facets[target].middle - from, usize::MAX))
-                .collect();
-            // A facet seen from behind is seen through the inside.
-            is_inside[place] = place >= 27
-                || sights.iter().any(|&hit| self.facets[hit].normal.dot(self.facets[hit].corners[0] - from) > 0.0);
-            if is_inside[place] {
-                sights.iter().for_each(|&hit| sets.join((patches + place) as u32, self.patch_of[hit]));
+        let mut start = 0;
+        // Patches that are not seen, and see others, are looked from only where there may be several parts.
+        for end in [27, lookouts.len()] {
+            for (place, &from) in lookouts.iter().enumerate().take(end).skip(start) {
+                let sights: Vec<usize> = targets
+                    .iter()
+                    .filter_map(|&target| self.first(from, self.facets[target].middle - from, usize::MAX))
+                    .collect();
+                // A facet seen from behind is seen through the inside.
+                is_inside[place] = place >= 27
+                    || sights.iter().any(|&hit| self.facets[hit].normal.dot(self.facets[hit].corners[0] - from) > 0.0);
+                if is_inside[place] {
+                    sights.iter().for_each(|&hit| sets.join((patches + place) as u32, self.patch_of[hit]));
+                }
             }
-        }
-        for one in 0..lookouts.len() {
-            for other in 0..one {
-                let both = is_inside[one] && is_inside[other];
-                let [a, b] = [one, other].map(|place| (patches + place) as u32);
-                if both && sets.of(a) != sets.of(b) {
-                    let along = lookouts[other] - lookouts[one];
-                    if self.first(lookouts[one], along, usize::MAX).is_none() {
-                        sets.join(a, b);
+            for one in start..end {
+                for other in 0..one {
+                    let both = is_inside[one] && is_inside[other];
+                    let [a, b] = [one, other].map(|place| (patches + place) as u32);
+                    if both && sets.of(a) != sets.of(b) {
+                        let along = lookouts[other] - lookouts[one];
+                        if self.first(lookouts[one], along, usize::MAX).is_none() {
+                            sets.join(a, b);
+                        }
                     }
                 }
             }
+            let mut parts = targets.iter().map(|&target| sets.of(self.patch_of[target]));
+            let first = parts.next();
+            if parts.all(|part| Some(part) == first) {
+                return Seen { part_of: vec![0; self.facets.len()], count: 1, faces: [Some(0); 6] };
+            }
+            start = end;
         }
         // A patch from which nothing is seen is in the midst of a part.
         for &at in &hidden {
@@ -172,7 +192,7 @@ impl<'f> Sight<'f> {
         let (part_of, _) = sets.numbered();
         // Each part has a patch, whose number is lower than that of a lookout: parts are counted by patches.
         let count = part_of[..patches].iter().max().map_or(1, |most| *most as usize + 1);
-        let faces = [12, 14, 10, 16, 4, 22].map(|place| is_inside[place].then(|| part_of[patches + place]));
+        let faces = FACES.map(|place| is_inside[place].then(|| part_of[patches + place]));
         Seen { part_of: self.patch_of.iter().map(|&patch| part_of[patch as usize]).collect(), count, faces }
     }
 }

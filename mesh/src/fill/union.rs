@@ -29,6 +29,12 @@ pub(super) struct Tangle {
 }
 
 impl Tangle {
+    /// About how often facets are compared with each other, and with a line.
+    pub(super) fn effort(facets: usize, inside: &Inside) -> f64 {
+        let fragments = facets * facets.min(MOST);
+        (facets * facets) as f64 + 2.0 * fragments as f64 * inside.crossed()
+    }
+
     /// The tangle of facets, or `None` if all of them bound the inside. Facets of one patch are compared only if `folded` says that more
     /// than two may meet in an edge.
     pub(super) fn new(inside: &Inside, facets: &[Facet], patch_of: &[u32], folded: bool) -> Option<Self> {
