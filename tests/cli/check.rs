@@ -307,7 +307,10 @@ fn says_which_distance_closes_a_surface_or_joins_cells() {
     }
     assert!(place.run("check discontinuous.vtu").good().out.contains("remedy     weld = 1e-10 in `[body]`"));
     let lost = place.run("check unknown-point.obj").good().out;
-    assert!(lost.contains("note       has a point without coordinates, which is left out") && !lost.contains("remedy"), "{lost}");
+    assert!(
+        lost.contains("note       has a point without coordinates, which is left out") && !lost.contains("remedy"),
+        "{lost}"
+    );
     let document = place.run("check last-digits.stl unknown-point.obj --json").json();
     let surface = |at: usize| &document["meshes"][at]["mesh"]["surface"];
     assert_eq!((&surface(0)["weld"], &surface(0)["open_edges"]), (&1e-6.into(), &36.into()));
