@@ -24,8 +24,11 @@ pub fn overlaps<'a>(
     position: &'a [DVec3],
     wanted: impl Fn([usize; 2]) -> bool + 'a,
 ) -> impl Iterator<Item = [usize; 2]> + 'a {
+    let count = if bodies.bodies().len() > 1 { bodies.bodies().len() } else { 0 };
     let placed = move |body: usize| Placed { body: &bodies.bodies()[body], position: &position[bodies.nodes(body)] };
-    let (boxes, order) = boxes(bodies, position);
+    let boxes: Vec<Extent> = (0..count).map(|body| Extent::of(placed(body).position)).collect();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&one, &other| boxes[one].low.x.total_cmp(&boxes[other].low.x));
     let mut pairs = Vec::new();
     for (at, &one) in order.iter().enumerate() {
         let near = order[at + 1..].iter().take_while(|&&other| boxes[other].low.x < boxes[one].high.x);
@@ -35,32 +38,6 @@ pub fn overlaps<'a>(
     pairs.sort_unstable();
     let is_wanted = move |pair: &[usize; 2]| wanted(*pair);
     pairs.into_iter().filter(is_wanted).filter(move |&[one, other]| placed(one).overlaps(placed(other)))
-}
-
-/// The least distance between the boxes around bodies of the `wanted` pairs (m): 0 where boxes meet, infinite without a pair.
-pub fn apart(bodies: &Assembly, position: &[DVec3], wanted: impl Fn([usize; 2]) -> bool) -> f64 {
-    let (boxes, order) = boxes(bodies, position);
-    let mut least = f64::INFINITY;
-    for (at, &one) in order.iter().enumerate() {
-        for &other in order[at + 1..].iter().filter(|&&other| wanted([one.min(other), one.max(other)])) {
-            let Extent { low, high } = boxes[one].common(&boxes[other]);
-            // Later bodies begin farther along x.
-            if low.x - high.x >= least {
-                break;
-            }
-            least = least.min((low - high).max_element().max(0.0));
-        }
-    }
-    least
-}
-
-/// The box around each of several bodies, and the order of their lower ends along x.
-fn boxes(bodies: &Assembly, position: &[DVec3]) -> (Vec<Extent>, Vec<usize>) {
-    let count = if bodies.bodies().len() > 1 { bodies.bodies().len() } else { 0 };
-    let (boxes, mut order): (Vec<_>, Vec<_>) =
-        (0..count).map(|body| (Extent::of(&position[bodies.nodes(body)]), body)).unzip();
-    order.sort_by(|&one, &other| boxes[one].low.x.total_cmp(&boxes[other].low.x));
-    (boxes, order)
 }
 
 /// A box.
@@ -86,7 +63,7 @@ impl Extent {
         })
     }
 
-    /// The common part of two boxes, whose high ends lie below the low ones where they do not meet.
+    /// The common part of two boxes that meet.
     fn common(&self, other: &Self) -> Self {
         Self { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
