@@ -75,7 +75,8 @@ const KEPT: usize = 1000;
 /// The mistakes and warnings found so far.
 #[derive(Debug)]
 pub(crate) struct Collector<'t> {
-    source: &'t Source<'t>,
+    /// The text of the file; `None` for a scene made in code.
+    source: Option<&'t Source<'t>>,
     root: &'t DeTable<'t>,
     found: Vec<Mistake>,
     total: usize,
@@ -83,8 +84,14 @@ pub(crate) struct Collector<'t> {
 }
 
 impl<'t> Collector<'t> {
+    /// For a file with this text.
     pub(crate) fn new(source: &'t Source<'t>, root: &'t DeTable<'t>) -> Self {
-        Self { source, root, found: Vec::new(), total: 0, warned: Vec::new() }
+        Self { source: Some(source), ..Self::of_code(root) }
+    }
+
+    /// For a scene made in code. Its mistakes have paths in place of lines and columns, and stay in the order in which they are found.
+    pub(crate) fn of_code(root: &'t DeTable<'t>) -> Self {
+        Self { source: None, root, found: Vec::new(), total: 0, warned: Vec::new() }
     }
 
     /// The number of mistakes found so far.
@@ -111,13 +118,14 @@ impl<'t> Collector<'t> {
 
     /// Line and column of the value at `path`, or of its nearest ancestor in the file. Both are 0 if the command line sets it.
     pub(crate) fn position(&self, path: &[PathPart<'_>]) -> (usize, usize) {
-        let (line, column) = self.source.position(span_of(self.root, path).start);
-        if self.source.is_setting(line) { (0, 0) } else { (line, column) }
+        let Some(source) = self.source else { return (0, 0) };
+        let (line, column) = source.position(span_of(self.root, path).start);
+        if source.is_setting(line) { (0, 0) } else { (line, column) }
     }
 
     /// Whether a mistake was found in the line of a byte.
     pub(crate) fn has_mistake_in_line_of(&self, byte: usize) -> bool {
-        let (line, _) = self.source.position(byte);
+        let line = self.source.map_or(0, |source| source.position(byte).0);
         self.found.iter().any(|mistake| mistake.line == line)
     }
 
@@ -164,22 +172,23 @@ impl<'t> Collector<'t> {
     /// Mistakes in the order of the text. Mistakes in settings of the command line come last and get no position.
     fn in_order(&self, mut found: Vec<Mistake>) -> Vec<Mistake> {
         found.sort_by_key(|mistake| (mistake.line, mistake.column));
-        let of_settings = found.iter_mut().filter(|mistake| self.source.is_setting(mistake.line));
+        let of_settings =
+            found.iter_mut().filter(|mistake| self.source.is_some_and(|source| source.is_setting(mistake.line)));
         of_settings.for_each(|mistake| (mistake.line, mistake.column) = (0, 0));
         found
     }
 }
 
-/// A mistake at a span of a text, in the value at `path`.
+/// A mistake at a span of a text, if there is one, in the value at `path`.
 pub(crate) fn mistake(
-    source: &Source<'_>,
+    source: Option<&Source<'_>>,
     span: Range<usize>,
     path: &[PathPart<'_>],
     message: String,
     help: Option<String>,
 ) -> Mistake {
-    let (line, column) = source.position(span.start);
-    let (excerpt, marked) = source.excerpt(&span);
+    let (line, column) = source.map_or((0, 0), |source| source.position(span.start));
+    let (excerpt, marked) = source.map(|source| source.excerpt(&span)).unwrap_or_default();
     Mistake { line, column, place: written(path), message, help, excerpt, marked }
 }
 

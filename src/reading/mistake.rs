@@ -58,13 +58,6 @@ pub struct Mistakes {
     pub total: usize,
 }
 
-impl Mistake {
-    /// This mistake without position and excerpt, for a scene made in code.
-    pub(crate) fn without_text(self) -> Self {
-        Self { line: 0, column: 0, excerpt: String::new(), marked: 0..0, ..self }
-    }
-}
-
 /// The number of printed mistakes: a screen or two. More usually have the same cause.
 const SHOWN: usize = 20;
 

@@ -1,6 +1,6 @@
 //! The digest of a scene's meaning.
 
-use super::file::{BodyFile, Coordinates, Positive};
+use super::file::{BodyFile, Coordinates, Positive, SceneFile};
 use super::schema::{SCHEMA, by_name, variants, without_nulls};
 use crate::look::print::SizeFile;
 use crate::sim::FrictionOf;
@@ -23,9 +23,8 @@ pub(super) struct FileDigests {
     pub(super) semi_bold: Option<String>,
 }
 
-/// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits. `typed` is the scene without the lists of its
-/// bodies. `lists` has those of each body: they may have millions of entries, and are written without a copy. One body is
-/// a table in canonical JSON, several are a list.
+/// SHA-256 of a typed scene without mistakes as canonical JSON, 64 hexadecimal digits. The lists of bodies, which may have millions of
+/// entries, are written without a copy. One body is a table in canonical JSON, several are a list.
 ///
 /// Canonical JSON has sorted keys, every number in the shortest form that reads back to the same double, and no key
 /// with its default. So comments, layout, order of keys, the notation of numbers (`1e4` or `10000.0`) and explicit
@@ -33,12 +32,9 @@ pub(super) struct FileDigests {
 /// describes only in words, such as `passes = 2`, changes the digest when typed.
 ///
 /// The name of a file is replaced by the digest of its content.
-pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDigests) -> String {
+pub(super) fn digest(typed: &SceneFile, files: FileDigests) -> String {
     // The types have only finite numbers and text keys, which JSON can represent.
     let mut value = serde_json::to_value(typed).unwrap_or_default();
-    for (at, file) in files.bodies.into_iter().enumerate() {
-        file.into_iter().for_each(|(key, file)| value["body"][at][key] = file.into());
-    }
     for (at, recording) in files.runs.into_iter().enumerate() {
         recording.into_iter().for_each(|recording| value["run"][at]["states"] = recording.into());
     }
@@ -51,27 +47,30 @@ pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDige
     without_nulls(&mut value);
     with_friction(&mut value);
     without_defaults(&mut value, &SCHEMA);
-    let schema_of_body = &SCHEMA["properties"]["body"]["anyOf"][0];
-    let bodies = value["body"].as_array_mut().into_iter().flatten();
     // Tables in which only defaults were typed.
     let is_empty = |value: &Value| *value == json!({});
-    bodies.for_each(|body| {
-        without_defaults(body, schema_of_body);
-        body.as_object_mut().into_iter().for_each(|body| body.retain(|_, value| !is_empty(value)));
-    });
     if let Some(Value::Object(view)) = value.get_mut("view") {
         view.retain(|_, value| !is_empty(value));
     }
     if value.get("view").is_some_and(is_empty) {
         value.as_object_mut().map(|scene| scene.remove("view"));
     }
+    let mut bodies = match value["body"].take() {
+        Value::Array(several) => several,
+        one => vec![one],
+    };
+    for (body, file) in bodies.iter_mut().zip(files.bodies) {
+        file.into_iter().for_each(|(key, file)| body[key] = file.into());
+        without_defaults(body, &SCHEMA["properties"]["body"]["anyOf"][0]);
+        body.as_object_mut().into_iter().for_each(|body| body.retain(|_, value| !is_empty(value)));
+        body.sort_all_objects();
+    }
     value.sort_all_objects();
-    let bodies = value["body"].as_array().into_iter().flatten().zip(lists);
-    let mut bodies: Vec<_> =
-        bodies.map(|(body, lists)| Part::Table(table(body).into_iter().chain(listed(lists)).collect())).collect();
+    let written = bodies.iter().zip(typed.body.iter().flatten());
+    let mut written: Vec<_> =
+        written.map(|(body, typed)| Part::Table(table(body).into_iter().chain(lists(typed)).collect())).collect();
     let mut scene = table(&value);
-    let bodies = if bodies.len() == 1 { bodies.remove(0) } else { Part::List(bodies) };
-    scene.insert("body", bodies);
+    scene.insert("body", if written.len() == 1 { written.remove(0) } else { Part::List(written) });
     let mut hash = Hash(Sha256::new());
     serde_json::to_writer(BufWriter::new(&mut hash), &scene).expect("hashing cannot fail");
     hash.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
@@ -95,8 +94,8 @@ fn table(value: &Value) -> BTreeMap<&str, Part<'_>> {
     value.as_object().into_iter().flatten().map(|(key, value)| (key.as_str(), Part::Value(value))).collect()
 }
 
-/// The non-empty lists of a body.
-fn listed(body: &BodyFile) -> impl Iterator<Item = (&str, Part<'_>)> {
+/// The lists of a body.
+fn lists(body: &BodyFile) -> impl Iterator<Item = (&str, Part<'_>)> {
     let lists = [
         ("nodes", body.nodes.as_deref().map(Part::Points)),
         ("elements", body.elements.as_deref().map(Part::Indices)),

@@ -53,13 +53,13 @@ pub(super) struct Excess {
     pub(super) message: String,
     /// The remedy.
     pub(super) help: String,
-    /// The place to change.
-    pub(super) place: Place,
+    /// What to change.
+    pub(super) cause: Cause,
 }
 
-/// The place of an excess.
+/// The cause of an excess.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Cause {
     /// The largest body.
     Body(usize),
     /// The model with the most springs: a run, and a place among its models.
@@ -67,7 +67,7 @@ pub(super) enum Place {
 }
 
 /// The bodies of a run and their models; `None` for models with mistakes, which have no springs.
-pub(super) type Parts<'a> = Vec<(usize, Option<&'a ModelFile>)>;
+pub(super) type RunBodies<'a> = Vec<(usize, Option<&'a ModelFile>)>;
 
 impl BodySize {
     /// A body without listed springs: its number of nodes, and its number of elements for each number of nodes.
@@ -96,7 +96,7 @@ impl BodySize {
 /// The limit that the bodies with their runs exceed, and the remedy: `less` makes a body smaller.
 pub(super) fn excess(
     bodies: &[BodySize],
-    runs: &[Parts<'_>],
+    runs: &[RunBodies<'_>],
     limits: &Limits,
     less: impl Fn(usize) -> &'static str,
 ) -> Option<Excess> {
@@ -128,7 +128,7 @@ pub(super) fn excess(
     let allow = |less: &str| format!("{less}, or allow it with --allow-large (in code, `Limits::NONE`)");
     let largest = (0..bodies.len()).max_by_key(|&body| (bodies[body].nodes, bodies[body].corners()))?;
     let less = less(largest);
-    let excess = |message, help| Some(Excess { message, help, place: Place::Body(largest) });
+    let excess = |message, help| Some(Excess { message, help, cause: Cause::Body(largest) });
     if nodes.max(elements) > u128::from(u32::MAX) {
         excess(format!("{asked}: more nodes or elements than 32-bit indices can count"), less.to_owned())
     } else if nodes > limits.nodes.into() {
@@ -142,7 +142,7 @@ pub(super) fn excess(
         let help = allow("put fewer springs on each element, such as springs = \"edges\"");
         let models = (0..).zip(runs).flat_map(|(run, parts)| (0..).zip(parts).map(move |(at, part)| (run, at, part)));
         let (run, at, _) = models.max_by_key(|(_, _, part)| springs_of(part))?;
-        Some(Excess { message, help, place: Place::Model(run, at) })
+        Some(Excess { message, help, cause: Cause::Model(run, at) })
     } else if !is_given(memory) {
         let help = "make the body smaller, or take a larger machine";
         excess(format!("{asked}, more than this machine has"), help.to_owned())

@@ -1,11 +1,12 @@
 //! Reading a scene from a file.
 
 use super::error::SceneError;
+use super::file::SceneFile;
 use super::limits::Limits;
 use super::mesh::is_mesh;
-use super::resolve::SceneParts;
+use super::resolve::Typed;
 use super::schema::SCHEMA;
-use super::structure::ValidFile;
+use super::structure::Checked;
 use super::{Scene, structure};
 use crate::reading::Mistakes;
 use crate::reading::beside::{in_folders, similar};
@@ -76,7 +77,15 @@ impl Scene {
     pub(super) fn read(document: Document<'_>, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let name = stem(Path::new(document.name)).unwrap_or_else(|| "scene".into());
         checked(document, &SCHEMA, FIGURE, |checked, report| {
-            Ok(SceneParts::new(&checked, folder, limits, report).scene(&name, limits, report))
+            let file = SceneFile::of(&checked, report);
+            let typed = Typed {
+                file: &file,
+                flawed: &checked.flawed,
+                is_list: checked.parts.get("body").is_some_and(Value::is_array),
+                folder,
+                limits,
+            };
+            Ok(typed.resolve(&name, report))
         })
     }
 }
@@ -125,7 +134,7 @@ pub(super) fn checked<T>(
     document: Document<'_>,
     schema: &Value,
     other: Other,
-    resolve: impl FnOnce(ValidFile, &mut Collector<'_>) -> Result<Option<T>, SceneError>,
+    resolve: impl FnOnce(Checked, &mut Collector<'_>) -> Result<Option<T>, SceneError>,
 ) -> Result<T, SceneError> {
     let Document { text, name, settings } = document;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -231,7 +240,7 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
             } else {
                 (not_toml(), None)
             };
-            mistake(source, span, &[], message, help)
+            mistake(Some(source), span, &[], message, help)
         })
         .collect();
     found.sort_by_key(|mistake| (mistake.line, mistake.column));

@@ -56,6 +56,7 @@ use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Assembly, Body, Dimension, Grip, Integrator, Obstacle, Shape};
 use crate::sim::{Diagnostic, Kernel, Moment, State};
 use glam::DVec3;
+use localshape_mesh::Group;
 #[cfg(feature = "render")]
 use std::io;
 use std::ops::Range;
@@ -110,12 +111,28 @@ pub struct SceneBody {
     pub side: f64,
     /// Whether this length is the side of a lattice's cells.
     pub has_cells: bool,
+    /// Springs listed by hand.
+    pub(crate) springs: Option<Vec<[u32; 2]>>,
+    /// Sets of nodes with a name.
+    pub(crate) groups: Vec<Group>,
+}
+
+impl SceneBody {
+    /// The body in messages.
+    fn in_words(&self) -> String {
+        in_words(&self.name)
+    }
+}
+
+/// A body with this name in messages.
+fn in_words(name: &str) -> String {
+    if name.is_empty() { "the body".to_owned() } else { format!("the body {}", quoted(name)) }
 }
 
 /// Bodies and runs in their surroundings, as the view sees them.
 fn subject<'a>(bodies: &'a [SceneBody], runs: &'a [Run], gravity: DVec3, obstacles: &'a [Obstacle]) -> Subject<'a> {
     let body = |one: &'a SceneBody| {
-        let SceneBody { name, body, initial, side, has_cells } = one;
+        let SceneBody { name, body, initial, side, has_cells, .. } = one;
         SubjectBody { name, body, initial, side: *side, has_cells: *has_cells }
     };
     let run = |one: &'a Run| {
@@ -156,24 +173,6 @@ pub struct Run {
     pub(crate) place: usize,
     /// A chosen colour of the run's lines. Other runs get different colours.
     pub colour: Option<Colour>,
-}
-
-/// Some bodies of a scene together.
-#[derive(Clone, Debug)]
-pub(crate) struct Together {
-    pub(crate) bodies: Arc<Assembly>,
-    /// The initial state of all of them.
-    pub(crate) initial: State,
-}
-
-impl Together {
-    /// Bodies with their initial states.
-    pub(crate) fn new<'a>(all: impl Iterator<Item = (&'a Arc<Body>, &'a State)> + Clone) -> Self {
-        let bodies = all.clone().map(|(body, _)| Arc::clone(body)).collect();
-        let joined = |part: fn(&State) -> &[DVec3]| all.clone().flat_map(|(_, state)| part(state)).copied().collect();
-        let initial = State::new(joined(|state| &state.position), joined(|state| &state.velocity));
-        Self { bodies: Arc::new(Assembly::new(bodies)), initial }
-    }
 }
 
 impl Scene {

@@ -1,9 +1,9 @@
 //! The JSON Schema of scene files, made from the types in [`super::file`].
 
-use super::file::SceneFile;
+use super::file::{LISTS, SceneFile};
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::sync::LazyLock;
 
 /// The JSON Schema (draft 2020-12) of scene files: every key with its meaning, unit, range and default.
@@ -22,12 +22,16 @@ pub fn schema() -> Value {
 /// The schema, made once.
 pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<SceneFile>("Scene file of localshape"));
 
-/// The schema of scenes made in code, whose runs may have models of the caller's own. Messages do not explain keys there: the
-/// builders are documented.
+/// The schema of scenes made in code. Their runs may have models of the caller's own, and the entries of their lists are not written.
+/// Messages do not explain keys: the builders are documented.
 pub(super) static SCHEMA_OF_CODE: LazyLock<Value> = LazyLock::new(|| {
     let mut schema = schema();
     let run = schema["properties"]["run"]["items"].as_object_mut();
     run.expect("a table").shift_remove("oneOf").expect("keys that a run needs");
+    for body in ["/properties/body/anyOf/0", "/properties/body/anyOf/1/items"] {
+        let body = schema.pointer_mut(body).expect("one body, or several");
+        LISTS.iter().for_each(|list| body["properties"][list]["items"] = json!({}));
+    }
     undescribe(&mut schema);
     schema
 });

@@ -20,11 +20,10 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, Positive, RegionFile, RunFile,
-    SceneFile, Side, StepFile, TimeFile,
+    Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, Positive, RegionFile, RunFile, SceneFile, Side,
+    StepFile, TimeFile,
 };
-use super::resolve::lists::check_unwritten;
-use super::resolve::{SceneParts, places};
+use super::resolve::Typed;
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
 use super::{Limits, Scene, structure};
@@ -32,21 +31,22 @@ use crate::look::typed::TypedColour;
 use crate::look::{Colour, Theme, TypedView};
 use crate::reading::captions::typed;
 use crate::reading::collector::Collector;
-use crate::reading::source::Source;
-use crate::reading::{Mistake, Mistakes};
 use crate::sim::model::{ElasticModel, ModelParameters};
 use crate::sim::{Diagnostic, Field, Integrator, Kernel};
 use serde::Serialize;
 use serde_json::json;
 use std::ops::RangeBounds;
+use std::path::Path;
 use std::sync::Arc;
-use toml::Spanned;
-use toml::de::DeValue;
+use toml::de::DeTable;
 
 /// Builds a [`Scene`] in code; see [`Scene::builder`]. Defaults are those of scene files.
 #[derive(Clone, Debug)]
 #[must_use = "a builder makes nothing until `build` is called"]
-pub struct SceneBuilder(SceneFile);
+pub struct SceneBuilder {
+    file: SceneFile,
+    time: TimeFile,
+}
 
 impl Scene {
     /// Begins a scene with a name, which is also its title, and a body. By default it lasts a second at 60 frames per
@@ -80,65 +80,67 @@ impl Scene {
     /// assert!(text.contains("`body.elements[0][2]`: there is no node 3; the body has nodes 0 to 2"), "{text}");
     /// ```
     pub fn builder(name: impl Into<String>, body: BodyBuilder) -> SceneBuilder {
-        SceneBuilder(SceneFile {
+        let time = TimeFile {
+            duration: 1.0,
+            step: None,
+            tolerance: None,
+            frames_per_second: 60.0,
+            every: None,
+            integrator: Integrator::default(),
+        };
+        let file = SceneFile {
             title: Some(name.into()),
             gravity: None,
-            time: TimeFile {
-                duration: 1.0,
-                step: None,
-                tolerance: None,
-                frames_per_second: 60.0,
-                every: None,
-                integrator: Integrator::default(),
-            },
-            body: vec![body.0],
+            time: None,
+            body: vec![Some(body.0)],
             run: Vec::new(),
             obstacle: Vec::new(),
             hold: Vec::new(),
             grab: Vec::new(),
             view: TypedView::default(),
-        })
+        };
+        SceneBuilder { file, time }
     }
 }
 
 impl SceneBuilder {
     setters! {
         /// Acceleration of gravity (m/s²).
-        gravity(acceleration: impl Into<Coordinates>) 0.gravity = Some(acceleration.into());
+        gravity(acceleration: impl Into<Coordinates>) file.gravity = Some(acceleration.into());
         /// Simulated time (s).
-        duration(seconds: f64) 0.time.duration = seconds;
+        duration(seconds: f64) time.duration = seconds;
         /// Time step ΔT (s) of runs without a step of their own.
-        step(seconds: f64) 0.time.step = Some(StepFile::Seconds(seconds));
+        step(seconds: f64) time.step = Some(StepFile::Seconds(seconds));
         /// The number of steps in the shortest period T = 2π√(m/k) of all runs, 50 by default, for runs without a step
         /// of their own.
-        steps_per_cycle(steps: f64) 0.time.step = Some(StepFile::Named(NamedStep::Divided(steps)));
+        steps_per_cycle(steps: f64) time.step = Some(StepFile::Named(NamedStep::Divided(steps)));
         /// The error allowed in each step of an integrator that chooses its steps, as a share of the size of the body,
         /// for runs without a tolerance of their own.
-        tolerance(share: f64) 0.time.tolerance = Some(share);
+        tolerance(share: f64) time.tolerance = Some(share);
         /// The integrator of runs without one of their own.
-        integrator(integrator: Integrator) 0.time.integrator = integrator;
+        integrator(integrator: Integrator) time.integrator = integrator;
         /// Frames per second of simulated time (1/s).
-        frames_per_second(rate: f64) 0.time.frames_per_second = rate;
+        frames_per_second(rate: f64) time.frames_per_second = rate;
         /// Time between rows of `diagnostics.csv` (s), which then has rows between frames.
-        every(seconds: f64) 0.time.every = Some(Positive(seconds));
+        every(seconds: f64) time.every = Some(Positive(seconds));
     }
 
     /// Adds a body. Each of several bodies needs a unique [name](BodyBuilder::name).
     pub fn body(mut self, body: BodyBuilder) -> Self {
-        self.0.body.push(body.0);
+        self.file.body.push(Some(body.0));
         self
     }
 
     /// Adds a run: a model on the bodies, and a panel of the picture. Names are unique. A [`RunBuilder`] gives the run
     /// more settings than its model.
     pub fn run(mut self, name: impl Into<String>, run: impl Into<RunBuilder>) -> Self {
-        self.0.run.push(RunFile { name: name.into(), ..run.into().0 });
+        self.file.run.push(Some(RunFile { name: name.into(), ..run.into().0 }));
         self
     }
 
     /// Adds an obstacle. Obstacles act in the order in which they are added.
     pub fn obstacle(mut self, obstacle: ObstacleBuilder) -> Self {
-        self.0.obstacle.push(obstacle.0);
+        self.file.obstacle.push(Some(obstacle.0));
         self
     }
 
@@ -149,14 +151,14 @@ impl SceneBuilder {
             std::ops::Bound::Unbounded => None,
         });
         let NodeSet { body, nodes } = nodes;
-        self.0.hold.push(HoldFile { body, nodes, from: from.unwrap_or(0.0), until });
+        self.file.hold.push(Some(HoldFile { body, nodes, from: from.unwrap_or(0.0), until }));
         self
     }
 
     /// Grabs nodes at the first key of a path, drags them along it, and releases them at the last.
     pub fn grab(mut self, nodes: NodeSet, path: MotionPath) -> Self {
         let NodeSet { body, nodes } = nodes;
-        self.0.grab.push(GrabFile { body, nodes, path });
+        self.file.grab.push(Some(GrabFile { body, nodes, path }));
         self
     }
 
@@ -188,7 +190,7 @@ impl SceneBuilder {
     /// Sets a key of the view.
     fn show(mut self, key: &str, value: impl Serialize) -> Self {
         let value = serde_json::to_value(value).expect("numbers and words");
-        self.0.view.insert(key.to_owned(), value);
+        self.file.view.insert(key.to_owned(), value);
         self
     }
 
@@ -213,67 +215,19 @@ impl SceneBuilder {
     /// [`SceneError::Mistakes`] with all mistakes: each names the setting, its value, the expectation and, if needed,
     /// the remedy.
     pub fn build(self, limits: &Limits) -> Result<Scene, SceneError> {
-        let Self(mut file) = self;
+        let Self { mut file, time } = self;
+        file.time = Some(time);
         let name = file.title.clone().unwrap_or_default();
-        // Long lists are checked in place.
-        let take = |body: &mut BodyFile| body.nodes.is_some().then(|| body.take_lists());
-        let lists: Vec<_> = file.body.iter_mut().map(take).collect();
-        let values = toml::Value::try_from(&file).expect("numbers, texts, and lists and tables of them");
-        let digits = digits(&values);
-        let tree = tree(values, &mut digits.iter());
-        let DeValue::Table(root) = tree.into_inner() else { unreachable!("a scene is a table") };
-        let source = Source::new("");
-        let mut report = Collector::new(&source, &root);
-        let checked = structure::check(&SCHEMA_OF_CODE, &root, &mut report);
-        let before = report.total();
-        let places = places(file.body.len(), file.body.len() > 1);
-        for ((body, lists), place) in file.body.iter_mut().zip(lists).zip(places) {
-            let Some(mut lists) = lists else { continue };
-            body.swap_lists(&mut lists);
-            check_unwritten(body, place, &mut report);
-        }
-        let is_flawed = report.total() > before;
-        match SceneParts::of(file, &checked, is_flawed, limits, &mut report).scene(&name, limits, &mut report) {
-            Some(scene) if report.total() == 0 => {
-                let warnings = scene.warnings.into_iter().map(Mistake::without_text).collect();
-                Ok(Scene { warnings, ..scene })
-            }
-            _ => {
-                let Mistakes { file, found, total } = report.finish(&name);
-                let found = found.into_iter().map(Mistake::without_text).collect();
-                Err(SceneError::Mistakes(Mistakes { file, found, total }))
-            }
-        }
+        // The scene file that says the same, without entries of lists and models of the caller's own, which are checked as they are.
+        let text = toml::to_string(&file).expect("numbers, texts, and lists and tables of them");
+        let root = DeTable::parse(&text).expect("as it was written");
+        let mut report = Collector::of_code(root.get_ref());
+        let checked = structure::check(&SCHEMA_OF_CODE, root.get_ref(), &mut report);
+        file.drop_mistakes(&checked);
+        let (flawed, is_list, folder) = (&checked.flawed, file.body.len() > 1, Path::new(""));
+        let scene = Typed { file: &file, flawed, is_list, folder, limits }.resolve(&name, &mut report);
+        scene.filter(|_| report.total() == 0).ok_or_else(|| SceneError::Mistakes(report.finish(&name)))
     }
-}
-
-/// The digits of all numbers in a description, in order.
-fn digits(value: &toml::Value) -> Vec<String> {
-    match value {
-        toml::Value::Integer(_) | toml::Value::Float(_) => vec![value.to_string()],
-        toml::Value::Array(entries) => entries.iter().flat_map(digits).collect(),
-        toml::Value::Table(table) => table.iter().flat_map(|(_, value)| digits(value)).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// A description as a TOML tree, which borrows the digits of numbers. Its values have no places in a text.
-fn tree<'t>(value: toml::Value, digits: &mut impl Iterator<Item = &'t String>) -> Spanned<DeValue<'t>> {
-    let inner = match value {
-        toml::Value::String(text) => DeValue::String(text.into()),
-        toml::Value::Boolean(truth) => DeValue::Boolean(truth),
-        toml::Value::Datetime(date) => DeValue::Datetime(date),
-        toml::Value::Integer(_) | toml::Value::Float(_) => {
-            let digits = digits.next().expect("digits of each number");
-            DeValue::parse(digits).expect("a number").into_inner()
-        }
-        toml::Value::Array(entries) => DeValue::Array(entries.into_iter().map(|entry| tree(entry, digits)).collect()),
-        toml::Value::Table(table) => {
-            let entry = |(key, value): (String, toml::Value)| (Spanned::new(0..0, key.into()), tree(value, digits));
-            DeValue::Table(table.into_iter().map(entry).collect())
-        }
-    };
-    Spanned::new(0..0, inner)
 }
 
 /// Builds a run with more settings than a model: its own bodies, time step, integrator, kernel or colour, or a model of your

@@ -6,12 +6,13 @@ use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words::{list, quoted};
-use crate::scene::structure::ValidFile;
+use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
 use crate::sim::Diagnostic;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
+use std::mem::take;
 use std::path::{Path, PathBuf};
 
 /// The shortest side of a figure (px).
@@ -21,7 +22,7 @@ type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
 
 /// The figure of a checked file.
 pub(super) fn resolve(
-    checked: ValidFile,
+    checked: Checked,
     name: &str,
     folder: &Path,
     scene: Reader<'_>,
@@ -30,7 +31,7 @@ pub(super) fn resolve(
     if report.total() > 0 {
         return Ok(None);
     }
-    let Ok(file) = FigureFile::deserialize(Value::Object(checked.valid)) else { return Ok(None) };
+    let Ok(file) = FigureFile::deserialize(Value::Object(checked.parts)) else { return Ok(None) };
     let scenes = Scenes { folder, read: scene, report, scenes: Vec::new(), places: HashMap::new() };
     let content = match (file.sheet, file.forces) {
         (Some(sheet), None) => scenes.sheet(sheet)?.map(Content::Sheet),
@@ -112,24 +113,22 @@ impl Scenes<'_, '_, '_> {
         }
     }
 
-    fn sheet(mut self, file: SheetFile) -> Result<Option<Sheet>, SceneError> {
+    /// The columns of a sheet; `None` after reporting a mistake.
+    fn columns(&mut self, file: &mut SheetFile) -> Result<Option<Vec<Column>>, SceneError> {
         let at = |key: &'static str| key_path!["sheet", key];
         let before = self.report.total();
-        let are_moments = file.moments.is_some();
-        let columns = match file.moments {
-            Some(_) if !file.column.is_empty() => {
-                self.report.at_key(&at("moments"), "both `moments` and `column` are given; keep one of them", None);
-                return Ok(None);
-            }
-            Some(moments) => {
-                moments.iter().map(|&time| ColumnFile { scene: None, time: Some(time), label: None }).collect()
-            }
-            None => file.column,
+        let moment = |&time: &f64| ColumnFile { scene: None, time: Some(time), label: None };
+        let wrong = match &file.moments {
+            Some(_) if !file.column.is_empty() => "both `moments` and `column` are given; keep one of them",
+            Some(_) if file.scene.is_none() => "the moments have no `scene`",
+            _ => "",
         };
-        if are_moments && file.scene.is_none() {
-            self.report.at_key(&at("moments"), "the moments have no `scene`", None);
+        if !wrong.is_empty() {
+            self.report.at_key(&at("moments"), wrong, None);
             return Ok(None);
         }
+        let moments = file.moments.iter().flatten().map(moment);
+        let columns: Vec<_> = moments.chain(take(&mut file.column)).collect();
         if columns.is_empty() {
             self.report.at(&at(""), "the sheet has no columns: expected `moments` or `[[sheet.column]]`", None);
             return Ok(None);
@@ -151,24 +150,28 @@ impl Scenes<'_, '_, '_> {
             };
             resolved.extend(scene.map(|scene| Column { scene, time: column.time, label: column.label }));
         }
-        if self.report.total() > before {
-            return Ok(None);
-        }
+        Ok(Some(resolved).filter(|_| self.report.total() == before))
+    }
+
+    fn sheet(mut self, mut file: SheetFile) -> Result<Option<Sheet>, SceneError> {
+        let before = self.report.total();
+        let Some(columns) = self.columns(&mut file)? else { return Ok(None) };
         let rows = if file.row.is_empty() {
             let all = self.scenes[0].runs.iter();
             all.map(|run| RowFile { run: run.name.clone(), time: None, label: None, note: None }).collect()
         } else {
             file.row
         };
-        self.check_cells(&rows, &resolved, are_moments);
+        self.check_cells(&rows, &columns, file.moments.is_some());
         let ends: Vec<_> = self.scenes.iter().map(end).collect();
         if let Some(other) = ends.iter().position(|end| *end != ends[0]).filter(|_| !file.charts.is_empty()) {
             let [one, two] = [0, other].map(|at| format!("“{}” ends at {} s", self.scenes[at].title, ends[at]));
             let message = format!("charts over several scenes have one axis of time, but {one} and {two}");
-            self.report.at_key(&at("charts"), message, "give the scenes the same duration and frame rate");
+            let help = "give the scenes the same duration and frame rate";
+            self.report.at_key(&key_path!["sheet", "charts"], message, help);
         }
         Scene::check_charts(&file.charts, &self.scenes, "sheet", self.report);
-        self.check_times(&file.charts, file.from, file.split, &resolved);
+        self.check_times(&file.charts, file.from, file.split, &columns);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.charts.is_empty()) {
             let path = key_path!["sheet", "row", index, "time"];
             let message = "charts mark the moments of columns, but here a row has one of its own";
@@ -188,15 +191,8 @@ impl Scenes<'_, '_, '_> {
             let scales = look::colour(typed, &subjects, "sheet", report).unwrap_or_default();
             scenes.iter_mut().zip(scales).for_each(|(scene, scale)| scene.view.colour = Some(scale));
         }
-        let sheet = Sheet {
-            scenes,
-            columns: resolved,
-            rows,
-            charts: file.charts,
-            number: file.number,
-            from: file.from.unwrap_or(0.0),
-            split: file.split,
-        };
+        let SheetFile { charts, number, from, split, .. } = file;
+        let sheet = Sheet { scenes, columns, rows, charts, number, from: from.unwrap_or(0.0), split };
         Ok((report.total() == before).then_some(sheet))
     }
 
@@ -263,10 +259,9 @@ impl Scenes<'_, '_, '_> {
 
     fn forces(mut self, file: ForcesFile) -> Result<Option<Forces>, SceneError> {
         let before = self.report.total();
-        let path = |index: usize| key_path!["forces", "scenes", index];
         for (index, named) in file.scenes.iter().enumerate() {
-            if self.scene(named, &path(index))?.is_some_and(|place| place < index) {
-                self.report.at(&path(index), "this scene is named a second time", None);
+            if self.scene(named, &of_forces(index))?.is_some_and(|place| place < index) {
+                self.report.at(&of_forces(index), "this scene is named a second time", None);
             }
         }
         if self.report.total() > before {
@@ -274,89 +269,92 @@ impl Scenes<'_, '_, '_> {
         }
         let names = |scene: &Scene| scene.runs.iter().map(|run| run.name.clone()).collect::<Vec<_>>();
         let runs = names(&self.scenes[0]);
-        for (index, scene) in self.scenes.iter().enumerate() {
-            if names(scene) != runs {
-                let all = list(&runs, "and", |name| format!("“{name}”"));
-                self.report.at(
-                    &path(index),
-                    format!("the runs of this scene differ from those of the first: {all}"),
-                    None,
-                );
-            }
+        for (index, _) in self.scenes.iter().enumerate().filter(|(_, scene)| names(scene) != runs) {
+            let all = list(&runs, "and", |name| format!("“{name}”"));
+            let message = format!("the runs of this scene differ from those of the first: {all}");
+            self.report.at(&of_forces(index), message, None);
         }
-        let compare = file.compare.map(|name| {
-            let place = runs.iter().position(|run| *run == name);
-            if place.is_none() {
-                let (message, help) = self.scenes[0].no_run(&name);
-                self.report.at(&key_path!["forces", "compare"], message, help);
-            }
-            place
-        });
+        let compare = file.compare.as_ref().and_then(|name| self.compared(name, &runs));
         if file.notes.len() > runs.len() {
             let message = format!("there are more notes ({}) than runs ({})", file.notes.len(), runs.len());
             self.report.at(&key_path!["forces", "notes"], message, "expected one for each at most");
         }
-        if runs.len() == 1 && compare.is_some() {
-            let message = "there is a single run, and nothing to compare it with";
-            self.report.at_key(&key_path!["forces", "compare"], message, None);
+        let recorded = |scene: &Scene| Some(quoted(&scene.runs.iter().find(|run| run.recording.is_some())?.name));
+        if let Some((index, run)) = self.scenes.iter().enumerate().find_map(|(at, scene)| Some((at, recorded(scene)?)))
+        {
+            let message = format!("the run {run} is a recording, whose forces are not known");
+            self.report.at(&of_forces(index), message, "give it a `model`, or leave it out");
+            return Ok(None);
+        }
+        let numbers = file.numbers == NumbersFile::Force;
+        if file.vectors && (numbers || runs.len() > 1) {
+            let message = "vectors are drawn for one run, and without numbers";
+            let help = "leave one run in the scenes, and write `numbers = \"none\"`".to_owned();
+            self.report.at_key(&key_path!["forces", "vectors"], message, help);
+        }
+        self.check_units(numbers);
+        let mut notes = file.notes;
+        notes.resize(runs.len(), String::new());
+        let Self { report, mut scenes, .. } = self;
+        share_lines(&mut scenes);
+        let forces = Forces { scenes, notes, compare, vectors: file.vectors, numbers };
+        Ok((report.total() == before).then_some(forces))
+    }
+
+    /// The place of the run with which others are compared among all `runs`; `None` after reporting that there is none. Reports scenes
+    /// in which another run has other bodies.
+    fn compared(&mut self, name: &str, runs: &[String]) -> Option<usize> {
+        let path = key_path!["forces", "compare"];
+        let place = runs.iter().position(|run| run == name);
+        if place.is_none() {
+            let (message, help) = self.scenes[0].no_run(name);
+            self.report.at(&path, message, help);
+        }
+        if runs.len() == 1 {
+            self.report.at_key(&path, "there is a single run, and nothing to compare it with", None);
         }
         for (index, scene) in self.scenes.iter().enumerate() {
-            let Some(compared) = compare.flatten().and_then(|place| scene.runs.get(place)) else { continue };
+            let Some(compared) = place.and_then(|place| scene.runs.get(place)) else { continue };
             if let Some(other) = scene.runs.iter().find(|run| run.of != compared.of) {
                 let [one, other] = [compared, other].map(|run| quoted(&run.name));
                 let message = format!("{one} and {other} have different bodies, so their forces cannot be compared");
-                self.report.at(&path(index), message, "give both runs the same bodies, or remove `compare`");
+                self.report.at(&of_forces(index), message, "give both runs the same bodies, or remove `compare`");
             }
         }
-        let recorded = |scene: &Scene| scene.runs.iter().position(|run| run.recording.is_some());
-        if let Some((index, run)) = self.scenes.iter().enumerate().find_map(|(at, scene)| Some((at, recorded(scene)?)))
-        {
-            let message = format!(
-                "the run {} is a recording, whose forces are not known",
-                quoted(&self.scenes[index].runs[run].name)
-            );
-            self.report.at(&path(index), message, "give it a `model`, or leave it out");
-            return Ok(None);
-        }
+        place
+    }
+
+    /// Reports scenes whose forces have another unit than those of the first, or are too many. With `numbers` their unit has a length.
+    fn check_units(&mut self, numbers: bool) {
         let stiffness = self.scenes[0].runs[0].models[0].stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {
             if scene.runs.iter().flat_map(|run| &run.models).any(|model| model.stiffness() != stiffness) {
                 let message =
                     format!("a run has another stiffness than the first, {stiffness} N/m: forces would have two units");
-                self.report.at(&path(index), message, "give all runs the same stiffness");
+                self.report.at(&of_forces(index), message, "give all runs the same stiffness");
             }
             let nodes = scene.runs.iter().map(|run| run.body().len()).max().unwrap_or_default();
             if nodes > MOST_NODES {
                 let bodies = if scene.bodies.len() == 1 { "the body has" } else { "the bodies of a run have" };
                 let message = format!("{bodies} {nodes} nodes, whose forces would hide each other");
-                self.report.at(&path(index), message, format!("expected at most {MOST_NODES}"));
+                self.report.at(&of_forces(index), message, format!("expected at most {MOST_NODES}"));
             }
         }
-        if file.vectors && (file.numbers == NumbersFile::Force || runs.len() > 1) {
-            let message = "vectors are drawn for one run, and without numbers";
-            let help = "leave one run in the scenes, and write `numbers = \"none\"`".to_owned();
-            self.report.at_key(&key_path!["forces", "vectors"], message, help);
-        }
         let side = self.scenes[0].view.side;
-        if let Some(index) = self
-            .scenes
-            .iter()
-            .position(|scene| (scene.view.side / side - 1.0).abs() > 1e-3 && file.numbers == NumbersFile::Force)
-        {
+        let other = self.scenes.iter().position(|scene| (scene.view.side / side - 1.0).abs() > 1e-3);
+        if let Some(index) = other.filter(|_| numbers) {
+            let found = self.scenes[index].view.side;
             let message = format!(
-                "the elements of this scene have sides of {} m, but {side} m in the first: numbers in `k × side` would have two units",
-                self.scenes[index].view.side
+                "the elements of this scene have sides of {found} m, but {side} m in the first: numbers in `k × side` would have two units"
             );
-            self.report.at(&path(index), message, "use bodies of one size, or `numbers = \"none\"`");
+            self.report.at(&of_forces(index), message, "use bodies of one size, or `numbers = \"none\"`");
         }
-        let mut notes = file.notes;
-        notes.resize(runs.len(), String::new());
-        let numbers = file.numbers == NumbersFile::Force;
-        let Self { report, mut scenes, .. } = self;
-        share_lines(&mut scenes);
-        let forces = Forces { scenes, notes, compare: compare.flatten(), vectors: file.vectors, numbers };
-        Ok((report.total() == before).then_some(forces))
     }
+}
+
+/// The place of a scene in a diagram of forces.
+fn of_forces(index: usize) -> [PathPart<'static>; 3] {
+    key_path!["forces", "scenes", index]
 }
 
 /// The scene's part of the input of views.

@@ -3,7 +3,10 @@
 use super::{Coordinates, Positive};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize, Serializer};
-use std::mem::swap;
+
+/// The keys of its lists.
+pub(in crate::scene) const LISTS: [&str; 7] =
+    ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
 
 /// The most bodies of a scene.
 const MOST: usize = 1000;
@@ -15,7 +18,7 @@ pub(super) fn one_or_several(generator: &mut SchemaGenerator) -> Schema {
 }
 
 /// Writes the bodies of a scene: one as a table, several as a list.
-pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn written<S: Serializer>(bodies: &[Option<BodyFile>], serializer: S) -> Result<S::Ok, S::Error> {
     match bodies {
         [only] => only.serialize(serializer),
         several => several.serialize(serializer),
@@ -64,29 +67,36 @@ pub(in crate::scene) struct BodyFile {
     /// A chain of two-node elements that begins at the origin: `{ count = 8, length = 0.1, direction = [1, 0] }`.
     pub(in crate::scene) bars: Option<BarsFile>,
     /// Rest position of each node (m). Two coordinates make a body in the plane, three a body in space.
+    #[serde(serialize_with = "begun")]
     #[schemars(length(min = 1))]
     pub(in crate::scene) nodes: Option<Vec<Coordinates>>,
     /// The nodes of each element, two or more, counted from 0. In the plane an element is a polygon, counter-clockwise.
     /// In space it is a tetrahedron or pyramid (the base counter-clockwise seen from the last node), a wedge (both
     /// triangles counter-clockwise seen from the second), a hexahedron (corners with x fastest, then y, then z), or the
     /// convex hull of any other number of nodes in any order. See also `convex`.
+    #[serde(serialize_with = "begun")]
     #[schemars(length(min = 1), inner(length(min = 2)))]
     pub(in crate::scene) elements: Option<Vec<Vec<u32>>>,
     /// Pairs of nodes, for mass-spring models without a named topology.
+    #[serde(serialize_with = "begun")]
     #[schemars(length(min = 1))]
     pub(in crate::scene) springs: Option<Vec<[u32; 2]>>,
     /// The nodes of each face to draw, counter-clockwise from outside. Default: the faces of the elements.
+    #[serde(serialize_with = "begun")]
     #[schemars(inner(length(min = 3)))]
     pub(in crate::scene) faces: Option<Vec<Vec<u32>>>,
     /// Initial position of each node (m), before `rotation`, `offset` and `lowest`, for bodies with `nodes`. Default:
     /// the rest positions.
+    #[serde(serialize_with = "begun")]
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
     /// A degenerate, inverted or random initial shape, such as `{ shape = "cloud", seed = 1 }`. Default: the rest
     /// shape.
     pub(in crate::scene) start: Option<Start>,
     /// Initial velocity of each node (m/s), instead of one `velocity`. `rotation` does not rotate it.
+    #[serde(serialize_with = "begun")]
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass`.
+    #[serde(serialize_with = "begun")]
     pub(in crate::scene) masses: Option<Vec<Positive>>,
     /// A mesh file beside the scene. Cells become elements: Gmsh (.msh, 2.2 or 4.1), VTK (.vtk, .vtu), Abaqus and CalculiX (.inp),
     /// Medit (.mesh). A surface is filled with elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb, .vtp, and the formats
@@ -139,37 +149,9 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) spin: Option<SpinFile>,
 }
 
-impl BodyFile {
-    /// Exchanges all lists with another body.
-    pub(in crate::scene) fn swap_lists(&mut self, other: &mut Self) {
-        swap(&mut self.nodes, &mut other.nodes);
-        swap(&mut self.elements, &mut other.elements);
-        swap(&mut self.springs, &mut other.springs);
-        swap(&mut self.faces, &mut other.faces);
-        swap(&mut self.positions, &mut other.positions);
-        swap(&mut self.velocities, &mut other.velocities);
-        swap(&mut self.masses, &mut other.masses);
-    }
-
-    /// Takes all lists out. A non-empty list leaves a single valid entry behind.
-    pub(in crate::scene) fn take_lists(&mut self) -> Self {
-        fn short<T>(list: &Option<Vec<T>>, entry: T) -> Option<Vec<T>> {
-            list.as_ref().map(|list| list.first().map(|_| entry).into_iter().collect())
-        }
-        let point = || Coordinates(vec![0.0; 2]);
-        let mut lists = Self {
-            nodes: short(&self.nodes, point()),
-            elements: short(&self.elements, vec![0; 2]),
-            springs: short(&self.springs, [0; 2]),
-            faces: short(&self.faces, vec![0; 3]),
-            positions: short(&self.positions, point()),
-            velocities: short(&self.velocities, point()),
-            masses: short(&self.masses, Positive(1.0)),
-            ..Self::default()
-        };
-        self.swap_lists(&mut lists);
-        lists
-    }
+/// Writes in place of a list, which may have millions of entries, whether it has any.
+fn begun<T, S: Serializer>(list: &Option<Vec<T>>, serializer: S) -> Result<S::Ok, S::Error> {
+    list.as_ref().map(|list| &[true][..list.len().min(1)]).serialize(serializer)
 }
 
 /// The elements that fill a surface.

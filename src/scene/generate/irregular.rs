@@ -1,6 +1,6 @@
 //! Lattices with randomly displaced nodes, without inverted elements.
 
-use super::grid::Grid;
+use super::block::Block;
 use super::random;
 use crate::sim::IndexLists;
 use glam::DVec3;
@@ -25,7 +25,7 @@ fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
 /// Displacements of an element that becomes flat or inverted are halved until no such element is left. The regular
 /// lattice has none, so this ends.
 pub(super) fn disturb(
-    grid: &Grid,
+    block: &Block,
     nodes: &mut [DVec3],
     elements: &IndexLists,
     middles: &[[u32; 8]],
@@ -34,7 +34,7 @@ pub(super) fn disturb(
 ) {
     let regular = nodes.to_vec();
     let corners = regular.len() - middles.len();
-    let mut shifts = shifts(grid, part, seed);
+    let mut shifts = shifts(block, part, seed);
     loop {
         for (node, shift) in shifts.iter().enumerate() {
             nodes[node] = regular[node] + *shift;
@@ -43,7 +43,7 @@ pub(super) fn disturb(
             nodes[corners + at] = middle(nodes, cell);
         }
         let mut is_bad = vec![false; corners];
-        for element in elements.iter().filter(|element| is_spoilt(element, &regular, nodes, grid.is_flat())) {
+        for element in elements.iter().filter(|element| is_spoilt(element, &regular, nodes, block.is_flat())) {
             for &node in element {
                 match (node as usize).checked_sub(corners) {
                     None => is_bad[node as usize] = true,
@@ -61,18 +61,18 @@ pub(super) fn disturb(
 }
 
 /// The displacement of each node at a corner (m).
-fn shifts(grid: &Grid, part: f64, seed: u32) -> Vec<DVec3> {
-    let axes = if grid.is_flat() { 2 } else { 3 };
-    let shortest = grid.sides.to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
+fn shifts(block: &Block, part: f64, seed: u32) -> Vec<DVec3> {
+    let axes = if block.is_flat() { 2 } else { 3 };
+    let shortest = block.sides.to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
     // The diagonal of the box in which a node moves has the length of the requested displacement.
     let farthest = part * shortest / (axes as f64).sqrt();
-    let [nx, ny, nz] = grid.cells;
-    let mut shifts = Vec::with_capacity(grid.len() as usize);
+    let [nx, ny, nz] = block.cells;
+    let mut shifts = Vec::with_capacity(block.len() as usize);
     for (z, y, x) in (0..=nz).flat_map(|z| (0..=ny).flat_map(move |y| (0..=nx).map(move |x| (z, y, x)))) {
         let index = shifts.len() as u64;
         let along = |axis: usize, at: u32| match at {
             0 => 0.0,
-            at if at == grid.cells[axis] => 0.0,
+            at if at == block.cells[axis] => 0.0,
             _ => farthest * (2.0 * random::unit(seed, index, axis as u64) - 1.0),
         };
         shifts.push(DVec3::new(along(0, x), along(1, y), along(2, z)));

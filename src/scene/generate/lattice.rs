@@ -1,6 +1,6 @@
 //! Lattices of cells, whole or cut into triangles, tetrahedra or mixed elements.
 
-use super::grid::Grid;
+use super::block::Block;
 use super::{Made, irregular, mixed};
 use crate::scene::file::{Cells, Lattice};
 use crate::scene::limits::BodySize;
@@ -26,39 +26,39 @@ pub(super) fn size(typed: &Lattice) -> BodySize {
 
 /// A lattice. In the plane its cells are squares or triangles, in space cubes or tetrahedra.
 pub(super) fn make(typed: &Lattice) -> Made {
-    let grid = Grid::new(typed);
+    let block = Block::new(typed);
     let mut elements = IndexLists::default();
     // The corners of cells with a node in their middle. These nodes follow the nodes at corners.
     let mut middles = Vec::new();
     match typed.elements {
-        Cells::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
-        Cells::Cells => grid.each_cell().for_each(|cell| elements.push(&grid.corners(cell))),
-        Cells::Triangles => grid.each_cell().for_each(|cell| triangles(&grid, cell, &mut elements)),
-        Cells::Tetrahedra => grid.each_cell().for_each(|cell| tetrahedra(&grid, cell, &mut elements)),
-        Cells::Mixed if grid.is_flat() => mixed::cut_squares(&grid, typed.seed, &mut elements),
-        Cells::Mixed => middles = mixed::cut_cubes(&grid, typed.seed, &mut elements),
+        Cells::Cells if block.is_flat() => block.each_cell().for_each(|cell| elements.push(&block.square(cell))),
+        Cells::Cells => block.each_cell().for_each(|cell| elements.push(&block.corners(cell))),
+        Cells::Triangles => block.each_cell().for_each(|cell| triangles(&block, cell, &mut elements)),
+        Cells::Tetrahedra => block.each_cell().for_each(|cell| tetrahedra(&block, cell, &mut elements)),
+        Cells::Mixed if block.is_flat() => mixed::cut_squares(&block, typed.seed, &mut elements),
+        Cells::Mixed => middles = mixed::cut_cubes(&block, typed.seed, &mut elements),
     }
-    let mut nodes = grid.nodes();
+    let mut nodes = block.nodes();
     irregular::extend_to_middles(&mut nodes, &middles);
     if typed.irregular > 0.0 {
-        irregular::disturb(&grid, &mut nodes, &elements, &middles, typed.irregular, typed.seed);
+        irregular::disturb(&block, &mut nodes, &elements, &middles, typed.irregular, typed.seed);
     }
     Made { nodes, elements }
 }
 
 /// Cuts a square in two. The diagonals of neighbours meet, so that no direction is preferred.
-fn triangles(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
-    let [a, b, c, d] = grid.square(cell);
+fn triangles(block: &Block, cell: [u32; 3], elements: &mut IndexLists) {
+    let [a, b, c, d] = block.square(cell);
     let halves = if (cell[0] + cell[1]).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
     halves.iter().for_each(|half| elements.push(half));
 }
 
 /// Cuts a cube in five: one tetrahedron on four corners that are no neighbours, and one on each other corner.
 /// Neighbouring cubes take the other four corners, so that their faces have the same diagonals.
-fn tetrahedra(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
+fn tetrahedra(block: &Block, cell: [u32; 3], elements: &mut IndexLists) {
     const EVEN: [[usize; 4]; 5] = [[0, 3, 6, 5], [1, 3, 0, 5], [2, 0, 3, 6], [4, 5, 0, 6], [7, 3, 5, 6]];
     const ODD: [[usize; 4]; 5] = [[1, 2, 4, 7], [0, 1, 2, 4], [3, 2, 1, 7], [5, 1, 4, 7], [6, 4, 2, 7]];
-    let corners = grid.corners(cell);
+    let corners = block.corners(cell);
     let parts = if cell.iter().sum::<u32>().is_multiple_of(2) { EVEN } else { ODD };
     parts.iter().for_each(|part| elements.push(&part.map(|at| corners[at])));
 }
@@ -136,7 +136,7 @@ mod tests {
             let size =
                 |element: &[u32]| volume_by_faces(kind(dimension, Solids::Ordered, element.len()), element, &nodes);
             let sizes: Vec<f64> = elements.iter().map(size).collect();
-            let sides = Grid::new(&typed).sides;
+            let sides = Block::new(&typed).sides;
             let cell = sides.x * sides.y * if dimension == Dimension::Space { sides.z } else { 1.0 };
             let whole = cell * typed.cells.iter().map(|&cells| f64::from(cells)).product::<f64>();
             assert!((sizes.iter().sum::<f64>() / whole - 1.0).abs() < 1e-12, "{typed:?}");
@@ -157,7 +157,7 @@ mod tests {
             elements.indices().iter().for_each(|&node| used[node as usize] = true);
             assert!(used.iter().all(|&used| used), "{typed:?}");
             let (low, high) = bounds(&plain(&typed.cells).nodes);
-            let scale = Grid::new(&typed).sides / 0.5;
+            let scale = Block::new(&typed).sides / 0.5;
             let (low, high) = (low * scale, high * scale);
             let count = nodes.len();
             if typed.cells.len() == 2 {

@@ -1,6 +1,6 @@
 //! Blocks of elements of many kinds that fit together: the cells of a lattice cut or joined at random.
 
-use super::grid::Grid;
+use super::block::Block;
 use super::random;
 use crate::sim::IndexLists;
 
@@ -10,20 +10,20 @@ const TURN: u64 = 4;
 
 /// Two neighbouring squares in the plane stay two, become a hexagon, or a pentagon and a triangle. A square that stays
 /// may be cut in two triangles. Pairs are staggered from row to row like bricks.
-pub(super) fn cut_squares(grid: &Grid, seed: u32, elements: &mut IndexLists) {
-    let [nx, ny, _] = grid.cells;
+pub(super) fn cut_squares(block: &Block, seed: u32, elements: &mut IndexLists) {
+    let [nx, ny, _] = block.cells;
     for y in 0..ny {
         let mut x = 0;
         while x < nx {
             let cell = [x, y, 0];
             let is_first = x % 2 == y % 2 && x + 1 < nx;
-            let wish = random::unit(seed, grid.node(cell).into(), WISH);
+            let wish = random::unit(seed, block.node(cell).into(), WISH);
             if is_first && wish < 0.5 {
-                join(grid, seed, cell, wish < 0.2, elements);
+                join(block, seed, cell, wish < 0.2, elements);
                 x += 2;
             } else {
-                let [a, b, c, d] = grid.square(cell);
-                match random::hash(seed, grid.node(cell).into(), TURN) % 4 {
+                let [a, b, c, d] = block.square(cell);
+                match random::hash(seed, block.node(cell).into(), TURN) % 4 {
                     0 => [[a, b, c], [a, c, d]].iter().for_each(|half| elements.push(half)),
                     1 => [[a, b, d], [b, c, d]].iter().for_each(|half| elements.push(half)),
                     _ => elements.push(&[a, b, c, d]),
@@ -36,11 +36,11 @@ pub(super) fn cut_squares(grid: &Grid, seed: u32, elements: &mut IndexLists) {
 
 /// Joins two squares side by side: `whole` as a hexagon, else as a pentagon and a triangle, cut off at one of the four
 /// outer corners. Both begin at a node that sees all their sides, the middle one of the lower or upper row.
-fn join(grid: &Grid, seed: u32, [x, y, z]: [u32; 3], whole: bool, elements: &mut IndexLists) {
-    let [a, b, e, f] = grid.square([x, y, z]);
-    let [_, c, d, _] = grid.square([x + 1, y, z]);
+fn join(block: &Block, seed: u32, [x, y, z]: [u32; 3], whole: bool, elements: &mut IndexLists) {
+    let [a, b, e, f] = block.square([x, y, z]);
+    let [_, c, d, _] = block.square([x + 1, y, z]);
     // Around: a b c below from left to right, d e f above from right to left.
-    match random::hash(seed, grid.node([x, y, z]).into(), TURN) % 4 {
+    match random::hash(seed, block.node([x, y, z]).into(), TURN) % 4 {
         _ if whole => elements.push(&[b, c, d, e, f, a]),
         0 => [&[b, c, d, e, f][..], &[a, b, f]].iter().for_each(|part| elements.push(part)),
         1 => [&[b, d, e, f, a][..], &[b, c, d]].iter().for_each(|part| elements.push(part)),
@@ -60,8 +60,8 @@ enum Wish {
     Middle,
 }
 
-fn wish(grid: &Grid, seed: u32, cell: [u32; 3]) -> Wish {
-    let index = grid.node(cell).into();
+fn wish(block: &Block, seed: u32, cell: [u32; 3]) -> Wish {
+    let index = block.node(cell).into();
     let turn = random::hash(seed, index, TURN);
     match random::unit(seed, index, WISH) {
         whole if whole < 0.6 => Wish::Whole,
@@ -72,11 +72,11 @@ fn wish(grid: &Grid, seed: u32, cell: [u32; 3]) -> Wish {
 
 /// The diagonal of the face at the low end of a cell along an axis, if one of its two cells is to become wedges along
 /// that axis. The lower cell takes precedence.
-fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool> {
+fn diagonal(block: &Block, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool> {
     let mut below = cell;
     below[axis] = below[axis].wrapping_sub(1);
-    let sides = [(cell[axis] > 0).then_some(below), (cell[axis] < grid.cells[axis]).then_some(cell)];
-    sides.into_iter().flatten().find_map(|cell| match wish(grid, seed, cell) {
+    let sides = [(cell[axis] > 0).then_some(below), (cell[axis] < block.cells[axis]).then_some(cell)];
+    sides.into_iter().flatten().find_map(|cell| match wish(block, seed, cell) {
         Wish::Wedges(along, diagonal) if along == axis => Some(diagonal),
         _ => None,
     })
@@ -88,24 +88,24 @@ const FACES: [[[usize; 4]; 2]; 3] =
     [[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]];
 
 /// Cuts a cube in space into two wedges, or into pyramids and tetrahedra about a node in its middle, or leaves it
-/// whole. Returns the corners of each cube with such a node. These nodes follow the nodes of the grid in this order.
-pub(super) fn cut_cubes(grid: &Grid, seed: u32, elements: &mut IndexLists) -> Vec<[u32; 8]> {
+/// whole. Returns the corners of each cube with such a node. These nodes follow the nodes of the block in this order.
+pub(super) fn cut_cubes(block: &Block, seed: u32, elements: &mut IndexLists) -> Vec<[u32; 8]> {
     let mut middles = Vec::new();
-    for cell in grid.each_cell() {
-        cut_cube(grid, seed, cell, &mut middles, elements);
+    for cell in block.each_cell() {
+        cut_cube(block, seed, cell, &mut middles, elements);
     }
     middles
 }
 
-fn cut_cube(grid: &Grid, seed: u32, cell: [u32; 3], middles: &mut Vec<[u32; 8]>, elements: &mut IndexLists) {
-    let corners = grid.corners(cell);
+fn cut_cube(block: &Block, seed: u32, cell: [u32; 3], middles: &mut Vec<[u32; 8]>, elements: &mut IndexLists) {
+    let corners = block.corners(cell);
     let diagonals: [[Option<bool>; 2]; 3] = std::array::from_fn(|axis| {
         let mut above = cell;
         above[axis] += 1;
-        [cell, above].map(|cell| diagonal(grid, seed, axis, cell))
+        [cell, above].map(|cell| diagonal(block, seed, axis, cell))
     });
     let is_square = |axis: usize| diagonals[axis] == [None, None];
-    if (0..3).all(is_square) && wish(grid, seed, cell) != Wish::Middle {
+    if (0..3).all(is_square) && wish(block, seed, cell) != Wish::Middle {
         return elements.push(&corners);
     }
     for axis in 0..3 {
@@ -121,7 +121,7 @@ fn cut_cube(grid: &Grid, seed: u32, cell: [u32; 3], middles: &mut Vec<[u32; 8]>,
             return;
         }
     }
-    let middle = grid.len() as u32 + middles.len() as u32;
+    let middle = block.len() as u32 + middles.len() as u32;
     middles.push(corners);
     for (faces, diagonals) in FACES.iter().zip(diagonals) {
         for (&face, diagonal) in faces.iter().zip(diagonals) {

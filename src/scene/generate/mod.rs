@@ -2,7 +2,7 @@
 //!
 //! Sizes are computed first, to be validated before the body is made. The input has been checked.
 
-mod grid;
+mod block;
 mod irregular;
 mod lattice;
 mod mixed;

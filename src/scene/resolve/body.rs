@@ -1,12 +1,12 @@
-//! The body and its initial state.
+//! A body from its table: its nodes and elements, masses and initial state.
 
-use super::lists::{Lists, check_count, check_exclusive};
-use super::mesh::Made as MadeMesh;
+use super::lists::Lists;
 use super::motion::axis;
-use super::{Beside, Place, direction, elements, mass, mesh, vector};
+use super::{KeyPath, Typed, direction, elements, mass, mesh, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
+use crate::scene::SceneBody;
 use crate::scene::file::{BodyFile, Cells, Coordinates, FillKind, Lattice, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::BodySize;
@@ -17,80 +17,88 @@ use localshape_mesh::{Cage, Filled, Group};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A body, its initial state, and the other settings of its table.
+/// The table of a body.
 #[derive(Debug)]
-pub(super) struct ResolvedBody {
-    /// Empty if it has none.
-    pub(super) name: String,
-    pub(super) body: Arc<Body>,
-    /// The initial state.
-    pub(super) initial: State,
-    /// Springs listed by hand.
-    pub(super) springs: Option<Vec<[u32; 2]>>,
-    /// Mean length of the elements' edges (m).
-    pub(super) side: f64,
-    /// Whether this length is the side of a lattice's cells.
-    pub(super) has_cells: bool,
-    /// Sets of nodes with a name.
-    pub(super) groups: Vec<Group>,
+pub(super) struct BodyTable<'a> {
+    pub(super) file: &'a BodyFile,
+    /// Its place in the scene.
+    pub(super) place: KeyPath,
+    /// Whether keys were left out because of mistakes, or lists have some.
+    pub(super) flawed: bool,
 }
 
-impl ResolvedBody {
-    /// The body in messages.
-    pub(super) fn in_words(&self) -> String {
-        in_words(&self.name)
+impl BodyTable<'_> {
+    /// The place of a key.
+    pub(super) fn at(&self, key: &'static str) -> KeyPath {
+        key_path![self.place; key]
+    }
+
+    /// The name of its mesh file.
+    pub(super) fn mesh(&self) -> &str {
+        self.file.mesh.as_deref().unwrap_or_default()
+    }
+
+    /// The interpretation of elements with four, five, six and eight nodes, unless they say.
+    fn solids(&self, usual: Solids) -> Solids {
+        if self.file.convex { Solids::Convex } else { usual }
+    }
+
+    /// The resolved body in an initial state, whose edges have a length (m), or else their mean one.
+    fn resolved(&self, body: Body, initial: State, side: Option<f64>) -> SceneBody {
+        SceneBody {
+            name: self.file.name.clone().unwrap_or_default(),
+            side: side.unwrap_or_else(|| elements::mean_edge(&body)),
+            body: Arc::new(body),
+            initial,
+            has_cells: false,
+            springs: None,
+            groups: Vec::new(),
+        }
     }
 }
 
-/// A body with this name in messages.
-pub(super) fn in_words(name: &str) -> String {
-    if name.is_empty() { "the body".to_owned() } else { format!("the body {}", quoted(name)) }
-}
-
-/// A body as typed, with the lists of its own file.
+/// A body whose nodes and elements are known, before it is made.
 #[derive(Debug)]
 pub(super) struct TypedBody<'a> {
-    file: &'a BodyFile,
-    place: Place,
+    table: BodyTable<'a>,
     content: Content<'a>,
-    /// Whether keys were left out because of mistakes, or lists have some.
-    flawed: bool,
+    /// The key that names its own file, and the digest of its content.
+    pub(super) digest: Option<(&'static str, String)>,
 }
 
 /// The nodes and elements of a body before it is made.
 #[derive(Debug)]
-enum Content<'a> {
+pub(super) enum Content<'a> {
     Generated(Generator<'a>),
+    /// Listed ones, and groups of nodes.
     Listed(Box<Lists>, Vec<Group>),
     /// A surface with the elements that fill it, and the length of their edges (m).
     Filled(Box<Filled>, f64),
 }
 
 impl<'a> TypedBody<'a> {
-    /// The body of a table; `None` if it has no nodes and elements. Points with another number of coordinates are
-    /// reported. `flawed` tells whether keys were left out because of mistakes. `beside` is the content of the body's
-    /// file. A surface is filled with at most so many elements.
-    pub(super) fn new(
-        file: &'a BodyFile,
-        beside: Option<Beside>,
-        place: Place,
-        flawed: bool,
-        most: u64,
-        report: &mut Collector<'_>,
-    ) -> Option<Self> {
+    /// The body at a place of a scene, whose own file is read; `None` if it has no nodes and elements. Mistakes in lists and files are
+    /// reported. A surface is filled with at most so many elements.
+    pub(super) fn read(scene: &Typed<'a>, at: usize, most: u64, report: &mut Collector<'_>) -> Option<Self> {
         let before = report.total();
-        let content = match Generator::of(file) {
-            Some(generator) => Content::Generated(generator),
-            None if file.file.is_some() || file.mesh.is_some() => match beside? {
-                Beside::Lists(lists) => Content::Listed(lists, Vec::new()),
-                Beside::Mesh(read) => match mesh::make(read, file, &place, flawed, most, report)? {
-                    MadeMesh::Cells(lists, groups) => Content::Listed(lists, groups),
-                    MadeMesh::Filled(filled, side) => Content::Filled(filled, side),
-                },
-            },
-            None => Content::Listed(Box::new(Lists::typed(file, &place, report)?), Vec::new()),
+        let (file, place) = (scene.file.body[at].as_ref()?, scene.place(at));
+        let mut table = BodyTable { file, place, flawed: scene.flawed.contains("body") };
+        let mut digest = None;
+        let content = if let Some(generator) = Generator::of(file) {
+            Content::Generated(generator)
+        } else if let Some(name) = &file.file {
+            let lists = Lists::read(scene.folder, name, table.place.clone(), scene.limits, report)?;
+            digest = Some(("file", lists.digest()));
+            Content::Listed(Box::new(lists), Vec::new())
+        } else if file.mesh.is_some() {
+            let mesh = mesh::read(scene.folder, &table, scene.limits, report)?;
+            digest = Some(("mesh", mesh.digest.clone()));
+            mesh::make(mesh, &table, most, report)?
+        } else {
+            Content::Listed(Box::new(Lists::typed(file, table.place.clone(), report)?), Vec::new())
         };
-        Some(Self { file, place, content, flawed: flawed || report.total() > before })
+        table.flawed |= report.total() > before;
+        Some(Self { table, content, digest })
     }
 
     /// Whether the body is in the plane or in space, by the first coordinates given.
@@ -119,87 +127,77 @@ impl<'a> TypedBody<'a> {
         }
     }
 
+    /// The keys that determine its size, and how to make it smaller.
+    fn sized_by(&self) -> (&'static [&'static str], &'static str) {
+        match self.content {
+            Content::Generated(Generator::Lattice(_)) => (&["lattice", "cells"], "use fewer cells"),
+            Content::Generated(Generator::Polygon(_)) => (&["polygon", "sides"], "use fewer sides"),
+            Content::Generated(Generator::Fan(_)) => (&["fan", "sides"], "use fewer sides"),
+            Content::Generated(Generator::Disc(_)) => (&["disc"], "use fewer rings or sectors"),
+            Content::Generated(Generator::Bars(_)) => (&["bars", "count"], "use fewer bars"),
+            Content::Listed(..) => (&["nodes"], "use fewer nodes"),
+            Content::Filled(..) => (&["fill"], "fill it with fewer `cells`, or a larger `side`"),
+        }
+    }
+
     /// How to make it smaller.
     pub(super) fn less(&self) -> &'static str {
-        match self.content {
-            Content::Generated(Generator::Lattice(_)) => "use fewer cells",
-            Content::Generated(Generator::Polygon(_) | Generator::Fan(_)) => "use fewer sides",
-            Content::Generated(Generator::Disc(_)) => "use fewer rings or sectors",
-            Content::Generated(Generator::Bars(_)) => "use fewer bars",
-            Content::Listed(..) => "use fewer nodes",
-            Content::Filled(..) => "fill it with fewer `cells`, or a larger `side`",
-        }
+        self.sized_by().1
     }
 
     /// Reports that it is too large.
     pub(super) fn too_large(&self, message: String, help: String, report: &mut Collector<'_>) {
-        let at = |keys: &[&'static str]| {
-            self.place.iter().copied().chain(keys.iter().map(|&key| PathPart::Key(key))).collect::<Vec<_>>()
-        };
-        let path = match &self.content {
-            Content::Generated(Generator::Lattice(_)) => at(&["lattice", "cells"]),
-            Content::Generated(Generator::Polygon(_)) => at(&["polygon", "sides"]),
-            Content::Generated(Generator::Fan(_)) => at(&["fan", "sides"]),
-            Content::Generated(Generator::Disc(_)) => at(&["disc"]),
-            Content::Generated(Generator::Bars(_)) => at(&["bars", "count"]),
-            Content::Filled(..) => at(&["fill"]),
+        let keys = self.sized_by().0.iter().map(|&key| PathPart::Key(key));
+        let path: Vec<_> = self.table.place.iter().copied().chain(keys).collect();
+        match &self.content {
             Content::Listed(lists, _) => match &lists.source.file {
-                Some((name, place)) => return report.at(place, format!("`{name}`: {message}"), help),
-                None => return report.at_key(&at(&["nodes"]), message, help),
+                Some((name, place)) => report.at(place, format!("`{name}`: {message}"), help),
+                None => report.at_key(&path, message, help),
             },
-        };
-        report.at(&path, message, help);
+            _ => report.at(&path, message, help),
+        }
     }
 
     /// Reports mistakes in settings of a body that is too large to be made.
     pub(super) fn check(&self, report: &mut Collector<'_>) {
         if let Content::Generated(generator) = self.content {
-            check_generator(generator, &self.place, report);
-            check_start(self.file, &self.place, generator.dimension(), report);
+            check_generator(generator, &self.table, report);
+            check_start(&self.table, generator.dimension(), report);
         }
     }
 
     /// The body, or `None` after reporting every mistake in it.
-    pub(super) fn resolve(self, report: &mut Collector<'_>) -> Option<ResolvedBody> {
-        let Self { file, place, content, flawed } = self;
+    pub(super) fn resolve(self, report: &mut Collector<'_>) -> Option<SceneBody> {
+        let Self { table, content, .. } = self;
         match content {
-            Content::Generated(generator) => generated(file, generator, &place, report),
-            Content::Listed(lists, groups) => Some(ResolvedBody { groups, ..listed(file, *lists, flawed, report)? }),
-            Content::Filled(of, side) => filled(file, *of, side, &place, report),
+            Content::Generated(generator) => generated(&table, generator, report),
+            Content::Listed(lists, groups) => Some(SceneBody { groups, ..listed(&table, *lists, report)? }),
+            Content::Filled(of, side) => filled(&table, *of, side, report),
         }
     }
 }
 
 /// A generated body.
-fn generated(
-    file: &BodyFile,
-    generator: Generator<'_>,
-    place: &Place,
-    report: &mut Collector<'_>,
-) -> Option<ResolvedBody> {
+fn generated(table: &BodyTable<'_>, generator: Generator<'_>, report: &mut Collector<'_>) -> Option<SceneBody> {
     let before = report.total();
     let dimension = generator.dimension();
-    let along = check_generator(generator, place, report);
+    let along = check_generator(generator, table, report);
     let Made { nodes: rest, elements } = generator.make(along?);
     let count = rest.len();
-    let mut body = Body::new(dimension, rest, vec![1.0; count], elements, solids(file), None);
-    let mass = mass::resolve(file, &body, None, place, report);
-    let initial = start(file, place, body.rest.clone(), None, dimension, report);
+    let mut body = Body::new(dimension, rest, vec![1.0; count], elements, table.solids(Solids::Ordered), None);
+    let mass = mass::resolve(table, &body, None, report);
+    let initial = start(table, body.rest.clone(), None, dimension, report);
     if report.total() > before {
         return None;
     }
     body.mass = mass?;
-    let body = Arc::new(body);
-    let of_cells = generator.side();
-    let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
-    let name = file.name.clone().unwrap_or_default();
-    let has_cells = of_cells.is_some();
-    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells, groups: Vec::new() })
+    let side = generator.side();
+    Some(SceneBody { has_cells: side.is_some(), ..table.resolved(body, initial, side) })
 }
 
 /// A surface with the elements that fill it, whose edges have a length (m).
-fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Collector<'_>) -> Option<ResolvedBody> {
-    let before = report.total();
+fn filled(table: &BodyTable<'_>, of: Filled, side: f64, report: &mut Collector<'_>) -> Option<SceneBody> {
+    let (file, before) = (table.file, report.total());
     let Filled { cage: Cage { nodes, elements, filled, convex, groups, volumes, overlap }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let measures = surface.measures();
@@ -210,8 +208,8 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
     let is_alike = file.fill.as_ref().is_none_or(|fill| fill.with == FillKind::Cubes);
     body.stiffness = (!is_alike).then(|| relative_stiffness(&body, side));
     body.carried = Some(Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights }));
-    let mass = mass::resolve(file, &body, volumes, place, report);
-    let initial = start(file, place, body.rest.clone(), None, Dimension::Space, report);
+    let mass = mass::resolve(table, &body, volumes, report);
+    let initial = start(table, body.rest.clone(), None, Dimension::Space, report);
     if report.total() > before {
         return None;
     }
@@ -223,9 +221,7 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
         let found: f64 = body.mass.iter().sum();
         body.mass.iter_mut().for_each(|mass| *mass *= density * (measures.volume - overlap) / found);
     }
-    let name = file.name.clone().unwrap_or_default();
-    let body = Arc::new(body);
-    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups })
+    Some(SceneBody { groups, ..table.resolved(body, initial, Some(side)) })
 }
 
 /// The size of a body with these nodes and elements.
@@ -237,8 +233,8 @@ fn size_of(nodes: &[DVec3], elements: &IndexLists) -> BodySize {
 
 /// Checks of a generator that the schema cannot express. Returns the direction of bars; that of other generators has no
 /// meaning.
-fn check_generator(generator: Generator<'_>, place: &Place, report: &mut Collector<'_>) -> Option<DVec3> {
-    let at = |key, inner| key_path![place; key, inner];
+fn check_generator(generator: Generator<'_>, table: &BodyTable<'_>, report: &mut Collector<'_>) -> Option<DVec3> {
+    let at = |key, inner| key_path![table.place; key, inner];
     match generator {
         Generator::Lattice(Lattice { cells, side, elements, .. }) => {
             let axes = cells.len();
@@ -277,66 +273,58 @@ fn check_generator(generator: Generator<'_>, place: &Place, report: &mut Collect
 }
 
 /// A body of listed nodes and elements.
-fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_>) -> Option<ResolvedBody> {
-    let before = report.total();
-    let place = lists.source.body.clone();
-    let solids = if file.convex { Solids::Convex } else { lists.solids };
+fn listed(table: &BodyTable<'_>, lists: Lists, report: &mut Collector<'_>) -> Option<SceneBody> {
+    let (file, before) = (table.file, report.total());
+    let solids = table.solids(lists.solids);
     let dimension = lists.dimension;
-    elements::check(&lists, solids, flawed, report);
+    elements::check(&lists, solids, table.flawed, report);
     let count = lists.nodes.len();
     for (key, length) in [
         ("masses", lists.masses.as_ref().map(Vec::len)),
         ("positions", lists.positions.as_ref().map(Vec::len)),
         ("velocities", lists.velocities.as_ref().map(Vec::len)),
     ] {
-        length.into_iter().for_each(|length| check_count(&lists.source, key, length, count, report));
+        length.into_iter().for_each(|length| lists.source.check_count(key, length, count, report));
     }
+    // Of lists in the scene the schema says it.
     if file.file.is_some() {
+        let [masses, positions, velocities] =
+            [lists.masses.is_some(), lists.positions.is_some(), lists.velocities.is_some()];
         for (key, typed) in [("mass", file.mass), ("density", file.density), ("mass_total", file.mass_total)] {
-            check_exclusive(&lists, lists.masses.is_some() && typed.is_some(), key, "masses", report);
+            lists.check_exclusive(masses && typed.is_some(), key, "masses", report);
         }
-        let both = lists.velocities.is_some() && file.velocity.is_some();
-        check_exclusive(&lists, both, "velocity", "velocities", report);
-        check_exclusive(&lists, lists.positions.is_some() && file.start.is_some(), "start", "positions", report);
+        lists.check_exclusive(velocities && file.velocity.is_some(), "velocity", "velocities", report);
+        lists.check_exclusive(positions && file.start.is_some(), "start", "positions", report);
     }
     let Lists { nodes: rest, elements, springs, faces, positions, velocities, masses, .. } = lists;
-    let initial = start(file, &place, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
-    if flawed || report.total() > before || elements.is_empty() {
+    let initial = start(table, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
+    if table.flawed || report.total() > before || elements.is_empty() {
         return None;
     }
     let is_listed = masses.is_some();
     let mass = masses.unwrap_or_else(|| vec![1.0; count]);
     let mut body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
     if !is_listed {
-        body.mass = mass::resolve(file, &body, None, &place, report)?;
+        body.mass = mass::resolve(table, &body, None, report)?;
     }
-    let body = Arc::new(body);
-    let side = elements::mean_edge(&body);
-    let name = file.name.clone().unwrap_or_default();
-    Some(ResolvedBody { name, body, initial, springs, side, has_cells: false, groups: Vec::new() })
+    Some(SceneBody { springs, ..table.resolved(body, initial, None) })
 }
 
 /// The body of a recording, called like its run, with its state at the start.
-pub(super) fn recorded(lists: Lists, name: String, start: State, report: &mut Collector<'_>) -> Option<ResolvedBody> {
-    let made = listed(&BodyFile::default(), lists, false, report)?;
-    Some(ResolvedBody { name, initial: start, ..made })
-}
-
-/// The interpretation of elements with four, five, six and eight nodes.
-fn solids(file: &BodyFile) -> Solids {
-    if file.convex { Solids::Convex } else { Solids::Ordered }
+pub(super) fn recorded(lists: Lists, name: String, start: State, report: &mut Collector<'_>) -> Option<SceneBody> {
+    let table = BodyTable { file: &BodyFile::default(), place: lists.source.body.clone(), flawed: false };
+    Some(SceneBody { name, initial: start, ..listed(&table, lists, report)? })
 }
 
 /// The initial positions and velocities of the body, from its listed positions (m) and velocities (m/s), if any.
 fn start(
-    file: &BodyFile,
-    place: &Place,
+    table: &BodyTable<'_>,
     mut position: Vec<DVec3>,
     velocities: Option<Vec<DVec3>>,
     dimension: Dimension,
     report: &mut Collector<'_>,
 ) -> State {
-    let (shape, turn, spin, offset, velocity) = check_start(file, place, dimension, report);
+    let (shape, turn, spin, offset, velocity) = check_start(table, dimension, report);
     if let Some((shape, direction, seed)) = shape {
         brought_to_start(&mut position, shape, direction, seed, dimension);
     }
@@ -350,7 +338,7 @@ fn start(
         let centre = position.iter().sum::<DVec3>() / position.len() as f64;
         velocity.iter_mut().zip(&position).for_each(|(velocity, &point)| *velocity += spin.cross(point - centre));
     }
-    if let Some(height) = file.lowest {
+    if let Some(height) = table.file.lowest {
         let lowest = position.iter().fold(f64::INFINITY, |lowest, point| lowest.min(point.y));
         // In this order the lowest node is exactly at the height that was typed.
         position.iter_mut().for_each(|point| point.y = height + (point.y - lowest));
@@ -362,14 +350,14 @@ fn start(
 /// translation and the velocity. Settings with mistakes are reported and left out.
 #[expect(clippy::type_complexity, reason = "the list of all settings of a start")]
 fn check_start(
-    file: &BodyFile,
-    place: &Place,
+    table: &BodyTable<'_>,
     dimension: Dimension,
     report: &mut Collector<'_>,
 ) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
+    let file = table.file;
     let shape = file.start.as_ref().and_then(|typed| {
-        check_use(typed.shape, place, report);
-        let path = key_path![place; "start", "direction"];
+        check_use(typed.shape, &table.place, report);
+        let path = key_path![table.place; "start", "direction"];
         let along = match &typed.direction {
             // Reported above.
             Some(_) if !typed.shape.has_direction() => DVec3::X,
@@ -379,22 +367,22 @@ fn check_start(
         Some((typed.shape, along, typed.seed))
     });
     let turn = file.rotation.as_ref().and_then(|typed| {
-        let path = key_path![place; "rotation"];
+        let path = table.at("rotation");
         Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
     });
     let spin = file.spin.as_ref().and_then(|typed| {
-        let path = key_path![place; "spin"];
+        let path = table.at("spin");
         Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
     });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
-        Some(typed) => vector(typed, dimension, &key_path![place; key], report).unwrap_or_default(),
+        Some(typed) => vector(typed, dimension, &table.at(key), report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// Reports keys of a start that do not belong to its shape.
-fn check_use(shape: StartShape, place: &Place, report: &mut Collector<'_>) {
+fn check_use(shape: StartShape, place: &KeyPath, report: &mut Collector<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),
         ("seed", shape.is_random(), "clouds"),

@@ -1,10 +1,10 @@
 //! Names of bodies and runs; the bodies of each run, and their models as typed.
 
-use super::{Place, body};
+use super::KeyPath;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{list, nearest, quoted};
-use crate::scene::Run;
 use crate::scene::file::{ModelFile, RunFile, RunSource};
+use crate::scene::in_words;
 use std::collections::BTreeMap;
 
 /// The bodies of a run and what moves them.
@@ -97,7 +97,7 @@ fn by_name<'a>(
         let name = names[body];
         let found = models.get_key_value(name);
         if found.is_none() {
-            let message = format!("`run[{at}].models` has no model for {}", body::in_words(name));
+            let message = format!("`run[{at}].models` has no model for {}", in_words(name));
             let given: Vec<_> = models.keys().collect();
             let found = if given.is_empty() {
                 "it is empty".to_owned()
@@ -128,23 +128,13 @@ pub(super) fn find(name: &str, names: &[&str], path: &[PathPart<'_>], report: &m
     found
 }
 
-/// Warns of bodies that no run has. A recording with a body of its own has no other.
-pub(super) fn warn_of_unused(runs: &[Run], names: &[&str], places: &[Place], report: &mut Collector<'_>) {
-    for (body, place) in places.iter().enumerate() {
-        if runs.iter().all(|run| !run.of.contains(&body)) {
-            let message = format!("no run has {}", body::in_words(names[body]));
-            report.warn(place, message, "add it to `bodies` of a run, or remove it");
-        }
-    }
-}
-
 /// Reports duplicate names, and names that cannot be used in files, of `[one, several]` tables at some places of a file.
 pub(super) fn check_names<'a>(
     [one, several]: [&str; 2],
-    named: impl Iterator<Item = (Place, Option<&'a str>)>,
+    named: impl Iterator<Item = (KeyPath, Option<&'a str>)>,
     report: &mut Collector<'_>,
 ) {
-    let mut known: BTreeMap<&str, Place> = BTreeMap::new();
+    let mut known: BTreeMap<&str, KeyPath> = BTreeMap::new();
     for (place, name) in named {
         let Some(name) = name else { continue };
         let path = key_path![place; "name"];

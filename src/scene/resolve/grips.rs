@@ -1,10 +1,10 @@
 //! Kinematic constraints: nodes held and dragged.
 
-use super::body::ResolvedBody;
 use super::{choice, motion, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, fine, list, nearest, quoted};
+use crate::scene::SceneBody;
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile, Side};
 use crate::scene::summary::corners;
 use crate::sim::{Assembly, Body, Dimension, Grip, Motion};
@@ -41,7 +41,7 @@ impl SceneGrip {
 pub(super) fn resolve(
     holds: &[Option<HoldFile>],
     grabs: &[Option<GrabFile>],
-    bodies: &[ResolvedBody],
+    bodies: &[SceneBody],
     report: &mut Collector<'_>,
 ) -> Option<Vec<SceneGrip>> {
     let mut named: Vec<(String, Vec<PathPart<'_>>, SceneGrip)> = Vec::new();
@@ -107,11 +107,7 @@ pub(super) fn check_steps(
 }
 
 /// Reports nodes in two constraints at the same time.
-fn check_overlaps(
-    named: &[(String, Vec<PathPart<'_>>, SceneGrip)],
-    bodies: &[ResolvedBody],
-    report: &mut Collector<'_>,
-) {
+fn check_overlaps(named: &[(String, Vec<PathPart<'_>>, SceneGrip)], bodies: &[SceneBody], report: &mut Collector<'_>) {
     let mut holders: BTreeMap<(usize, u32), Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
         let nodes = grip.nodes.iter().enumerate().flat_map(|(body, nodes)| nodes.iter().map(move |&node| (body, node)));
@@ -144,7 +140,7 @@ fn check_overlaps(
 }
 
 /// The owner of a node in messages, which only one of several bodies needs.
-fn of(body: usize, bodies: &[ResolvedBody]) -> String {
+fn of(body: usize, bodies: &[SceneBody]) -> String {
     if bodies.len() == 1 { String::new() } else { format!(" of {}", bodies[body].in_words()) }
 }
 
@@ -152,7 +148,7 @@ fn of(body: usize, bodies: &[ResolvedBody]) -> String {
 fn nodes(
     name: Option<&str>,
     typed: &NodesFile,
-    bodies: &[ResolvedBody],
+    bodies: &[SceneBody],
     layers: &[OnceCell<Vec<Layers>>],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
@@ -175,7 +171,7 @@ fn nodes(
 /// The selected nodes of each of some bodies, in rising order.
 fn nodes_of_each(
     typed: &NodesFile,
-    bodies: &[ResolvedBody],
+    bodies: &[SceneBody],
     layers: &[OnceCell<Vec<Layers>>],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
@@ -197,7 +193,7 @@ fn nodes_of_each(
     }
 }
 
-fn listed(list: &[u32], body: &ResolvedBody, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
+fn listed(list: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
     let (before, count) = (report.total(), body.body.len());
     let mut first = HashMap::new();
     for (place, &node) in list.iter().enumerate() {
@@ -215,23 +211,17 @@ fn listed(list: &[u32], body: &ResolvedBody, path: &[PathPart<'_>], report: &mut
 }
 
 /// The nodes of each body: of its group with this name, or else of its side at rest.
-fn named(
-    name: &str,
-    bodies: &[ResolvedBody],
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Vec<Vec<u32>>> {
+fn named(name: &str, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<Vec<u32>>> {
     /// The most groups that are named in a message.
     const NAMED: usize = 20;
-    let of_body =
-        |body: &ResolvedBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
+    let of_body = |body: &SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
     let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
     let is_flat = bodies[0].body.dimension == Dimension::Plane;
     let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
     let side = Side::ALL.into_iter().find(|side| typed(side) == name);
     let there = side.filter(is_there);
     if there.is_some() || found.iter().any(Option::is_some) {
-        let of_side = |body: &ResolvedBody| there.map(|side| of_side(side, &body.body)).unwrap_or_default();
+        let of_side = |body: &SceneBody| there.map(|side| of_side(side, &body.body)).unwrap_or_default();
         let nodes = found.into_iter().zip(bodies).map(|(group, body)| group.unwrap_or_else(|| of_side(body)));
         return Some(nodes.collect());
     }
@@ -276,7 +266,7 @@ fn of_side(side: Side, body: &Body) -> Vec<u32> {
 
 fn within(
     region: &RegionFile,
-    bodies: &[ResolvedBody],
+    bodies: &[SceneBody],
     layers: &[OnceCell<Vec<Layers>>],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
@@ -284,8 +274,8 @@ fn within(
     let dimension = bodies[0].body.dimension;
     let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
     // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
-    let close = |body: &ResolvedBody| ROUND_OFF * body.body.extent();
-    let inside = |body: &ResolvedBody, is_inside: &dyn Fn(DVec3, f64) -> bool| -> Vec<u32> {
+    let close = |body: &SceneBody| ROUND_OFF * body.body.extent();
+    let inside = |body: &SceneBody, is_inside: &dyn Fn(DVec3, f64) -> bool| -> Vec<u32> {
         let position = (0..).zip(&body.initial.position);
         position.filter(|(_, at)| is_inside(**at, close(body))).map(|(node, _)| node).collect()
     };
@@ -358,13 +348,7 @@ fn layers_of(body: &Body) -> Vec<Layers> {
 /// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at
 /// another place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them
 /// along the others. Boxes around rows and corners are thin along several axes.
-fn warn_of_rest(
-    nodes: &[u32],
-    layers: &[Layers],
-    body: &ResolvedBody,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) {
+fn warn_of_rest(nodes: &[u32], layers: &[Layers], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let (position, dimension) = (&body.initial.position, body.body.dimension);
     let taken = layers.iter().map(|layers| {
         let mut taken = vec![0; layers.sizes.len()];

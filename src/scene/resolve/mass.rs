@@ -1,23 +1,22 @@
 //! The masses of a body's nodes.
 
-use super::Place;
-use crate::reading::collector::{Collector, key_path, written};
-use crate::scene::file::{BodyFile, LARGEST};
+use super::body::BodyTable;
+use crate::reading::collector::{Collector, written};
+use crate::scene::file::LARGEST;
 use crate::sim::geometry::node_volumes;
 use crate::sim::{Body, Dimension};
 
 /// The mass of each node of a body without masses of its nodes (kg), or `None` after reporting a mistake. Nodes may have parts of the
 /// body's volume of their own.
 pub(super) fn resolve(
-    file: &BodyFile,
+    table: &BodyTable<'_>,
     body: &Body,
     volumes: Option<Vec<f64>>,
-    place: &Place,
     report: &mut Collector<'_>,
 ) -> Option<Vec<f64>> {
     let nodes = body.len();
     let volumes = || volumes.unwrap_or_else(|| node_volumes(body));
-    let (key, masses) = match (file.density, file.mass_total) {
+    let (key, masses) = match (table.file.density, table.file.mass_total) {
         (Some(density), _) => {
             let volumes = volumes();
             if let Some(node) = volumes.iter().position(|&volume| volume <= 0.0) {
@@ -29,7 +28,7 @@ pub(super) fn resolve(
                     true => format!("no element of the body has {measure}"),
                     false => format!("node {node} belongs to no element with {measure}"),
                 };
-                let path = key_path![place; "density"];
+                let path = table.at("density");
                 let message = format!("`{}` is a mass per {per}, but {found}", written(&path));
                 report.at_key(&path, message, "give `mass_total`, or the `mass` of every node");
                 return None;
@@ -44,11 +43,11 @@ pub(super) fn resolve(
             let share = |volume| if has_volumes { total * (volume / all) } else { equal };
             ("mass_total", volumes.into_iter().map(share).collect::<Vec<_>>())
         }
-        (None, None) => return Some(vec![file.mass.unwrap_or(1.0); nodes]),
+        (None, None) => return Some(vec![table.file.mass.unwrap_or(1.0); nodes]),
     };
     // Masses of nodes that are typed have the same limits.
     if let Some(node) = masses.iter().position(|&mass| !(mass > 0.0 && mass <= LARGEST)) {
-        let path = key_path![place; key];
+        let path = table.at(key);
         let message = format!("`{}` gives node {node} a mass of {:e} kg", written(&path), masses[node]);
         report.at(&path, message, format!("expected more than 0, up to {LARGEST:e} kg"));
         return None;

@@ -1,56 +1,43 @@
 //! Bodies of mesh files.
 
-use super::Place;
+use super::KeyPath;
+use super::body::{BodyTable, Content};
 use super::lists::{ListSource, Lists};
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, several, short};
-use crate::scene::file::{BodyFile, FillFile, FillKind, LARGEST, Positive, Up};
+use crate::scene::file::{FillFile, FillKind, LARGEST, Positive, Up};
 use crate::scene::limits::Limits;
 use crate::scene::mesh::{self, CELLS, MeshFile};
 use crate::sim::{Dimension, IndexLists};
-use localshape_mesh::{Cage, Fill, Filled, Group, Mesh, Surface, Volume, fill};
+use localshape_mesh::{Cage, Fill, Mesh, Surface, Volume, fill};
 use std::path::Path;
 
-/// The content of a mesh file, upright in metres.
-#[derive(Debug)]
-pub(super) enum Made {
-    /// Cells, which are the elements, and their groups of nodes.
-    Cells(Box<Lists>, Vec<Group>),
-    /// A surface with the elements that fill it, and the length of their edges (m).
-    Filled(Box<Filled>, f64),
-}
-
-/// The mesh of a body, or `None` after reporting its mistakes.
+/// The mesh of a body in a folder, or `None` after reporting its mistakes.
 pub(super) fn read(
     folder: &Path,
-    file: &BodyFile,
-    place: &Place,
+    table: &BodyTable<'_>,
     limits: &Limits,
     report: &mut Collector<'_>,
 ) -> Option<MeshFile> {
-    let name = file.mesh.as_ref()?;
-    let weld = file.weld.map(|Positive(distance)| distance / scale(file));
+    let name = table.mesh();
+    let weld = table.file.weld.map(|Positive(distance)| distance / scale(table));
     let read = MeshFile::read(&folder.join(name), weld, limits);
-    read.map_err(|(message, help)| report.at(&key_path![place; "mesh"], format!("`{name}` {message}"), help)).ok()
+    read.map_err(|(message, help)| report.at(&table.at("mesh"), format!("`{name}` {message}"), help)).ok()
 }
 
 /// The length of the unit of a mesh file (m).
-fn scale(file: &BodyFile) -> f64 {
-    file.scale.map_or(1.0, |Positive(scale)| scale)
+fn scale(table: &BodyTable<'_>) -> f64 {
+    table.file.scale.map_or(1.0, |Positive(scale)| scale)
 }
 
-/// The elements of a mesh with at most so many of them, or `None` after reporting a mistake. `flawed` tells whether keys were left
-/// out because of mistakes.
-pub(super) fn make(
+/// The elements of a mesh with at most so many of them, upright in metres, or `None` after reporting a mistake.
+pub(super) fn make<'a>(
     read: MeshFile,
-    file: &BodyFile,
-    place: &Place,
-    flawed: bool,
+    table: &BodyTable<'_>,
     most: u64,
     report: &mut Collector<'_>,
-) -> Option<Made> {
-    let name = file.mesh.as_deref().unwrap_or_default();
-    let path = key_path![place; "mesh"];
+) -> Option<Content<'a>> {
+    let (file, name, path) = (table.file, table.mesh(), table.at("mesh"));
     let mut mesh = read.mesh;
     mesh.notes().iter().for_each(|note| report.warn(&path, format!("`{name}` {note}"), None));
     let (points, dimension) = match &mut mesh {
@@ -59,11 +46,11 @@ pub(super) fn make(
     };
     let up = file.up.unwrap_or_default();
     if dimension == Dimension::Plane && up == Up::Z {
-        let message = format!("`{}` is \"z\", but `{name}` is in the plane", written(&key_path![place; "up"]));
-        report.at(&key_path![place; "up"], message, "expected \"x\" or \"y\"");
+        let message = format!("`{}` is \"z\", but `{name}` is in the plane", written(&table.at("up")));
+        report.at(&table.at("up"), message, "expected \"x\" or \"y\"");
         return None;
     }
-    mesh::place(points, up as usize, scale(file));
+    mesh::place(points, up as usize, scale(table));
     let (most_distant, longest) =
         (points.iter().fold(0.0, |far: f64, at| far.max(at.abs().max_element())), mesh::longest(points));
     if most_distant.is_nan() || most_distant > LARGEST {
@@ -84,27 +71,25 @@ pub(super) fn make(
         );
     }
     match mesh {
-        Mesh::Volume(volume) => cells(volume, file, place, flawed, report),
-        Mesh::Surface(surface) => filled(&surface, longest, file, place, flawed, most, report),
+        Mesh::Volume(volume) => cells(volume, table, report),
+        Mesh::Surface(surface) => filled(&surface, longest, table, most, report),
     }
 }
 
 /// The cells of a volume.
-fn cells(volume: Volume, file: &BodyFile, place: &Place, flawed: bool, report: &mut Collector<'_>) -> Option<Made> {
-    let name = file.mesh.as_deref().unwrap_or_default();
-    let path = key_path![place; "mesh"].to_vec();
+fn cells<'a>(volume: Volume, table: &BodyTable<'_>, report: &mut Collector<'_>) -> Option<Content<'a>> {
+    let (file, name, path) = (table.file, table.mesh(), table.at("mesh"));
     if file.fill.is_some() {
-        let message = format!("`{}` is about surfaces, but `{name}` has cells", written(&key_path![place; "fill"]));
-        report.at_key(&key_path![place; "fill"], message, "remove it: the cells are the elements");
+        let message = format!("`{}` is about surfaces, but `{name}` has cells", written(&table.at("fill")));
+        report.at_key(&table.at("fill"), message, "remove it: the cells are the elements");
         return None;
     }
     if file.density.is_none() && file.mass_total.is_none() && file.mass.is_none() {
-        if flawed {
-            return None;
+        if !table.flawed {
+            let message = "has none of `density`, `mass_total` and `mass`, which a mesh needs";
+            let help = "write `density` (kg/m³), such as density = 1000";
+            report.at(&path, format!("`{}` {message}", written(&table.place)), help);
         }
-        let message =
-            format!("`{}` has none of `density`, `mass_total` and `mass`, which a mesh needs", written(place));
-        report.at(&path, message, "write `density` (kg/m³), such as density = 1000");
         return None;
     }
     let help = || match volume.joining_weld() {
@@ -112,40 +97,29 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, flawed: bool, report: &
         None => "mesh them as one body".to_owned(),
     };
     warn_of_turned(volume.turned, volume.cells.len(), name, &path, report);
-    warn_of_parts(volume.points.len(), &volume.cells, help, place, name, report);
-    let Volume { dimension, solids, points: nodes, cells: elements, groups, .. } = volume;
-    let source = ListSource { body: place.clone(), file: Some((name.to_owned(), path)) };
-    let (springs, faces, positions, velocities, masses) = Default::default();
-    let lists = Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
-    Some(Made::Cells(Box::new(lists), groups))
+    warn_of_parts(volume.points.len(), &volume.cells, help, table, report);
+    let Volume { dimension, solids, points, cells, groups, .. } = volume;
+    let source = ListSource { body: table.place.clone(), file: Some((name.to_owned(), path)) };
+    let lists = Lists { solids, ..Lists::new(source, dimension, points, cells) };
+    Some(Content::Listed(Box::new(lists), groups))
 }
 
 /// A surface with the elements that fill it.
-fn filled(
+fn filled<'a>(
     surface: &Surface,
     longest: f64,
-    file: &BodyFile,
-    place: &Place,
-    flawed: bool,
+    table: &BodyTable<'_>,
     most: u64,
     report: &mut Collector<'_>,
-) -> Option<Made> {
-    let name = file.mesh.as_deref().unwrap_or_default();
-    let path = key_path![place; "mesh"];
-    check_mass(file, place, flawed, report)?;
-    let typed = file.fill.clone().unwrap_or_default();
+) -> Option<Content<'a>> {
+    let (name, path) = (table.mesh(), table.at("mesh"));
+    check_mass(table, report)?;
+    let typed = table.file.fill.clone().unwrap_or_default();
     let (chosen, side) = chosen(&typed, longest);
     if side > longest {
-        let message = format!(
-            "`{}` is longer than `{name}`, which is {} m long",
-            written(&key_path![place; "fill", "side"]),
-            short(longest)
-        );
-        report.warn(
-            &key_path![place; "fill", "side"],
-            message,
-            "use a smaller side: elements larger than a body do not bend with it",
-        );
+        let path = key_path![table.place; "fill", "side"];
+        let message = format!("`{}` is longer than `{name}`, which is {} m long", written(&path), short(longest));
+        report.warn(&path, message, "use a smaller side: elements larger than a body do not bend with it");
     }
     let limited = most < u64::from(u32::MAX);
     let most = usize::try_from(most).unwrap_or(usize::MAX).min(u32::MAX as usize);
@@ -169,8 +143,8 @@ fn filled(
     }
     let Cage { nodes, elements, .. } = &filled.cage;
     let help = || "join them in the program that made it".to_owned();
-    warn_of_parts(nodes.len(), elements, help, place, name, report);
-    Some(Made::Filled(Box::new(filled), side))
+    warn_of_parts(nodes.len(), elements, help, table, report);
+    Some(Content::Filled(Box::new(filled), side))
 }
 
 /// The fill that a scene asks for, and the length of its edges (m).
@@ -199,29 +173,25 @@ fn fewer(typed: &FillFile, side: f64, longest: f64, limited: bool) -> String {
 }
 
 /// Reports a filled body without a mass of its volume.
-fn check_mass(file: &BodyFile, place: &Place, flawed: bool, report: &mut Collector<'_>) -> Option<()> {
-    let name = file.mesh.as_deref().unwrap_or_default();
+fn check_mass(table: &BodyTable<'_>, report: &mut Collector<'_>) -> Option<()> {
+    let (file, name) = (table.file, table.mesh());
     if file.density.is_some() || file.mass_total.is_some() {
         return Some(());
     }
     let help = "write `density` (kg/m³), such as density = 1000, or `mass_total` (kg)";
     if file.mass.is_some() {
-        let path = key_path![place; "mass"];
-        let message = format!(
-            "`{}` is that of every node, but nodes of `{name}` have different parts of its inside",
-            written(&path)
-        );
-        report.at_key(&path, message, help);
-    } else if !flawed {
-        let message =
-            format!("`{}` has neither `density` nor `mass_total`, which a filled surface needs", written(place));
-        report.at(&key_path![place; "mesh"], message, help);
+        let path = table.at("mass");
+        let of_node = format!("`{}` is that of every node", written(&path));
+        report.at_key(&path, format!("{of_node}, but nodes of `{name}` have different parts of its inside"), help);
+    } else if !table.flawed {
+        let message = "has neither `density` nor `mass_total`, which a filled surface needs";
+        report.at(&table.at("mesh"), format!("`{}` {message}", written(&table.place)), help);
     }
     None
 }
 
 /// Warns of cells that a file lists inside out.
-pub(super) fn warn_of_turned(turned: usize, all: usize, name: &str, place: &Place, report: &mut Collector<'_>) {
+pub(super) fn warn_of_turned(turned: usize, all: usize, name: &str, place: &KeyPath, report: &mut Collector<'_>) {
     let [number, all] = [turned, all].map(|cells| count(cells as u128));
     let message = match turned {
         0 => return,
@@ -236,14 +206,13 @@ fn warn_of_parts(
     nodes: usize,
     elements: &IndexLists,
     help: impl FnOnce() -> String,
-    place: &Place,
-    name: &str,
+    table: &BodyTable<'_>,
     report: &mut Collector<'_>,
 ) {
     let parts = mesh::parts(nodes, elements);
     if parts > 1 {
-        let message =
-            format!("`{name}` makes {} parts that share no node, so nothing holds them together", count(parts as u128));
-        report.warn(&key_path![place; "mesh"], message, format!("{}, unless they may fall apart", help()));
+        let (name, parts) = (table.mesh(), count(parts as u128));
+        let message = format!("`{name}` makes {parts} parts that share no node, so nothing holds them together");
+        report.warn(&table.at("mesh"), message, format!("{}, unless they may fall apart", help()));
     }
 }

@@ -1,10 +1,10 @@
 //! Obstacles.
 
-use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
 use crate::reading::captions::{quantity, rounded};
 use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::scene::SceneBody;
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
 use crate::sim::geometry::{bounds, is_inside};
 use crate::sim::{Dimension, Motion, Obstacle, Shape};
@@ -14,7 +14,7 @@ use glam::{DQuat, DVec3};
 pub(super) fn resolve(
     typed: &[Option<ObstacleFile>],
     dimension: Option<Dimension>,
-    bodies: &[&ResolvedBody],
+    bodies: &[&SceneBody],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Obstacle>> {
     let dimension = dimension?;
@@ -109,7 +109,7 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[PathPart<'_>], report:
 const TOUCHING: f64 = 1e-9;
 
 /// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
-fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let (placed, of) = (obstacle.at(0.0, 1.0), body.in_words());
     let name = match obstacle.shape {
         Shape::Floor { .. } => "floor",

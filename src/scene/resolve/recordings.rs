@@ -1,21 +1,18 @@
 //! The recordings of runs: archives beside the scene, and the bodies in them.
 
-use super::body::ResolvedBody;
 use super::lists::{ListSource, Lists};
-use super::{Place, body, mesh};
+use super::{KeyPath, Typed, body, mesh};
 use crate::reading::beside::missing;
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{Positive, RunFile, StatesFile, Up};
-use crate::scene::limits::Limits;
 use crate::scene::recording::{Archive, Axes, Flaw, Recorded};
 use crate::scene::sequence::{self, Sequence};
-use crate::scene::{COURSE, Together};
+use crate::scene::{COURSE, SceneBody};
 use crate::sim::{Body, Dimension, IndexLists, State};
 use glam::DVec3;
 use localshape_mesh::{Cells, ReadError, Volume};
 use sha2::{Digest, Sha256};
-use std::path::Path;
 use std::sync::Arc;
 
 /// A recording of a run.
@@ -47,19 +44,14 @@ pub(super) enum Shown {
     /// The bodies of its run.
     Bodies(State),
     /// A body of its own.
-    Own(Box<ResolvedBody>),
+    Own(Box<SceneBody>),
 }
 
 impl ReadRecording {
     /// The recording of a run, if it has one; `None` after reporting its mistakes, too.
-    pub(super) fn read(
-        folder: &Path,
-        at: usize,
-        run: &RunFile,
-        rate: f64,
-        limits: &Limits,
-        report: &mut Collector<'_>,
-    ) -> Option<Self> {
+    pub(super) fn read(scene: &Typed<'_>, at: usize, report: &mut Collector<'_>) -> Option<Self> {
+        let (folder, limits, run) = (scene.folder, scene.limits, scene.file.run[at].as_ref()?);
+        let rate = scene.file.time.as_ref().map_or(1.0, |time| time.frames_per_second);
         let (file, chosen) = run.states.as_ref()?.parts();
         let (path, source, known) = (folder.join(file), source(at, run), report.total());
         let scale = run.scale.map_or(1.0, |Positive(scale)| scale);
@@ -115,18 +107,16 @@ impl ReadRecording {
         self.recorded.digest.clone() + &own
     }
 
-    /// The recording, and whether its body is the scene's; `None` after reporting a mistake. `all` are the bodies of the run, and
-    /// `dimension` is that of the scene.
+    /// The recording, and whether its body is the scene's; `None` after reporting a mistake. `whole` are all bodies of the run as one.
     pub(super) fn shown(
         self,
         at: usize,
         run: &RunFile,
-        all: &Together,
-        dimension: Dimension,
+        whole: &Body,
         report: &mut Collector<'_>,
     ) -> Option<(Arc<Recorded>, Shown)> {
         let (file, known) = (self.file, report.total());
-        let (recorded, own) = match self.own.of(self.recorded, all.bodies.whole(), dimension) {
+        let (recorded, own) = match self.own.of(self.recorded, whole) {
             Ok((recorded, own)) => (Arc::new(recorded), own),
             Err(flaw) => {
                 told(at, run, &file, flaw, report);
@@ -153,7 +143,8 @@ type Listed = (Lists, usize, Vec<String>);
 
 impl Own {
     /// The recording of a body, and the body unless it is the whole of a run.
-    fn of(self, recorded: Recorded, whole: &Body, dimension: Dimension) -> Result<(Recorded, Option<Listed>), Flaw> {
+    fn of(self, recorded: Recorded, whole: &Body) -> Result<(Recorded, Option<Listed>), Flaw> {
+        let dimension = whole.dimension;
         let wrong = match (dimension, recorded.columns) {
             (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
             (Dimension::Plane, 3) if !recorded.is_flat => {
@@ -195,9 +186,7 @@ impl Own {
                 let Volume { places, solids, points: nodes, cells: elements, turned, notes, .. } =
                     cells.elements(dimension).map_err(wrong)?;
                 let is_same = nodes.len() == whole.len() && are_alike(&elements, &whole.elements);
-                let (springs, faces, positions, velocities, masses) = Default::default();
-                let own =
-                    Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
+                let own = Lists { solids, ..Lists::new(source, dimension, nodes, elements) };
                 Ok((recorded.only(places), (!is_same).then_some((own, turned, notes))))
             }
         }
@@ -210,7 +199,7 @@ const ARRAYS: [&str; 9] = ["position", "time", "velocity", "rest", "elements", "
 const OWN: [&str; 4] = ["memory", "body", "bodies", COURSE];
 
 /// Reports arrays of a body without its nodes, and warns of arrays that are not read.
-fn check_names(names: &[String], run: &str, file: &str, place: &Place, report: &mut Collector<'_>) {
+fn check_names(names: &[String], run: &str, file: &str, place: &KeyPath, report: &mut Collector<'_>) {
     let key = |name: &str| name.strip_prefix(run).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name).to_owned();
     // Those with a point belong to other runs.
     let keys: Vec<_> = names.iter().map(|name| (name, key(name))).filter(|(_, key)| !key.contains('.')).collect();
@@ -247,7 +236,7 @@ fn told(at: usize, run: &RunFile, file: &str, flaw: Flaw, report: &mut Collector
 }
 
 /// The place of the file's name in the scene.
-fn place(at: usize, run: &RunFile) -> Place {
+fn place(at: usize, run: &RunFile) -> KeyPath {
     match run.states {
         Some(StatesFile::OfRun(_)) => key_path!["run", at, "states", "file"].to_vec(),
         _ => key_path!["run", at, "states"].to_vec(),

@@ -20,21 +20,20 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A file without the parts that have mistakes.
+/// A checked file.
 #[derive(Debug)]
-pub(super) struct ValidFile {
-    /// The file as JSON, without top-level keys that have mistakes. Array entries and other values with mistakes are
-    /// null.
-    pub(super) valid: Map<String, Json>,
+pub(super) struct Checked {
+    /// The file as JSON, without keys that have mistakes. Array entries with mistakes are null.
+    pub(super) parts: Map<String, Json>,
     /// Top-level keys with mistakes in or below them.
     pub(super) flawed: BTreeSet<String>,
 }
 
 /// Checks a whole file.
-pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_>) -> ValidFile {
+pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_>) -> Checked {
     let mut walk = Walk { schema, report, path: Vec::new() };
     walk.table_rules(schema, root, 0..0);
-    let (mut valid, mut flawed) = (Map::new(), BTreeSet::new());
+    let (mut parts, mut flawed) = (Map::new(), BTreeSet::new());
     for (key, value) in root.iter() {
         let name = key.get_ref().as_ref();
         let before = walk.report.total();
@@ -61,9 +60,9 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_
         if walk.report.total() > before {
             flawed.insert(name.to_owned());
         }
-        valid.insert(name.to_owned(), part);
+        parts.insert(name.to_owned(), part);
     }
-    ValidFile { valid, flawed }
+    Checked { parts, flawed }
 }
 
 struct Walk<'r, 't, 'p> {

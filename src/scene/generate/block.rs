@@ -5,14 +5,14 @@ use glam::DVec3;
 
 /// The cells of a block and the nodes at their corners.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grid {
+pub(super) struct Block {
     /// Cells along x, y and z; 0 along z in the plane.
     pub(super) cells: [u32; 3],
     /// Sides of a cell (m).
     pub(super) sides: DVec3,
 }
 
-impl Grid {
+impl Block {
     pub(super) fn new(typed: &Lattice) -> Self {
         let axis = |axis: usize| match &typed.side {
             SideFile::Equal(side) => *side,

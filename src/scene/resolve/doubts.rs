@@ -1,0 +1,176 @@
+//! Warnings about a resolved scene: what is allowed, but probably a mistake.
+
+use super::Typed;
+use crate::look::{View, font};
+use crate::reading::collector::{Collector, key_path};
+use crate::reading::words::{count, ends, quoted, short};
+use crate::scene::mesh::longest;
+use crate::scene::{Run, Scene, SceneBody};
+use crate::sim::geometry::overlaps;
+use std::collections::BTreeSet;
+
+/// Warns of all that is probably not meant.
+pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    warn_of_missing_letters(&scene.view, report);
+    warn_of_unused(scene, typed, report);
+    warn_of_time(scene, report);
+    warn_of_steps(scene, report);
+    warn_of_overlaps(scene, typed, report);
+    warn_of_braked_rotation(scene, report);
+    warn_of_sizes(scene, typed, report);
+    if let Some((run, [message, help])) = scene.too_soft() {
+        report.warn(&key_path!["run", run, "model"], message, help);
+    }
+}
+
+/// Warns of bodies that no run has. A recording with a body of its own has no other.
+fn warn_of_unused(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let several = if typed.file.body.len() > 1 { typed.file.body.len() } else { 0 };
+    for body in (0..several).filter(|body| scene.runs.iter().all(|run| !run.of.contains(body))) {
+        let message = format!("no run has {}", scene.bodies[body].in_words());
+        report.warn(&typed.place(body), message, "add it to `bodies` of a run, or remove it");
+    }
+}
+
+/// Warns of texts around panels with a character that no font has.
+fn warn_of_missing_letters(view: &View, report: &mut Collector<'_>) {
+    for (key, text) in [("title", &view.title), ("caption", &view.caption), ("clock", &view.clock)] {
+        if let Some(missing) = font::missing(&view.look.font, text) {
+            let (letter, number) = (quoted(&missing.to_string()), u32::from(missing));
+            let message = format!("no font has {letter} (U+{number:04X}), so that a box is drawn in its place");
+            let help = "write it in other letters, or give a `view.font` that has it";
+            report.warn(&key_path!["view", key], message, help);
+        }
+    }
+}
+
+/// Warns of a scene with one frame, and of a very long computation.
+fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
+    /// Computation time for one corner of an element and one step (s), measured on one cube.
+    const CORNER: f64 = 3e-8;
+    const LONG: f64 = 7200.0;
+    let last = scene.last_frame();
+    if last == 0 && scene.duration > 0.0 {
+        let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
+        let message = format!("at {rate} frames per second, {duration} s have only one frame, the start");
+        report.warn(
+            &key_path!["time", "frames_per_second"],
+            message,
+            // Rounded down, there would be one frame again.
+            format!("use at least {} to show the end", ends([0.0, 1.0 / scene.duration])[1]),
+        );
+    }
+    let simulated = || (0..).zip(&scene.runs).filter(|(_, run)| run.recording.is_none());
+    let steps = |run| scene.frame_step(run, last);
+    let elements = |run: &Run| run.body().elements.len();
+    let corners = |run: &Run| run.body().elements.indices().len().max(8) as f64;
+    let seconds: f64 = simulated().map(|(at, run)| steps(at) as f64 * corners(run) * CORNER).sum();
+    if seconds > LONG {
+        let hours = seconds / 3600.0;
+        let long = match hours {
+            ..48.0 => format!("{hours:.0} hours"),
+            ..10_000.0 => format!("{:.0} days", hours / 24.0),
+            _ => format!("{:.0} years", hours / 8766.0),
+        };
+        let steps = count(simulated().map(|(at, _)| steps(at)).fold(0, u64::saturating_add).into());
+        let (least, most) =
+            simulated().map(|(_, run)| elements(run)).fold((usize::MAX, 0), |(a, b), one| (a.min(one), b.max(one)));
+        let [fewest, elements] = [least, most].map(|elements| count(elements as u128));
+        let elements = match most {
+            1 => "1 element".to_owned(),
+            _ if least < most => format!("{fewest} to {elements} elements"),
+            _ => format!("{elements} elements"),
+        };
+        let message = format!("{steps} steps of all runs × {elements} take about {long} on one processor");
+        let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
+        report.warn(&key_path!["time", "duration"], message, help);
+    }
+}
+
+/// Warns of steps near or above the largest stable one, or with which bodies are soft, and of integrators that are never stable.
+fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
+    for run in 0..scene.runs.len() {
+        for [message, help] in scene.near_limit(run).into_iter().chain(scene.softened(run)) {
+            let own = key_path!["run", run, "step"];
+            let path = if report.is_typed(&own) { own.to_vec() } else { key_path!["time", "step"].to_vec() };
+            report.warn(&path, message, help);
+        }
+        if let Some([message, help]) = scene.never_stable(run) {
+            let own = key_path!["run", run, "integrator"];
+            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", "integrator"] };
+            report.warn(path, message, help);
+        }
+    }
+}
+
+/// Warns of damping that also brakes rotation where bodies turn, unless it is asked for by name.
+fn warn_of_braked_rotation(scene: &Scene, report: &mut Collector<'_>) {
+    for run in 0..scene.runs.len() {
+        if let Some([message, help]) = scene.brakes_rotation(run) {
+            let own = key_path!["run", run, "model"];
+            let names = scene.runs[run].of.iter().map(|&body| scene.bodies[body].name.as_str());
+            let by_name = names.map(|name| key_path!["run", run, "models", name, "damping_of"]);
+            let is_named = by_name.into_iter().any(|path| report.is_typed(&path))
+                || report.is_typed(&key_path![own; "damping_of"]);
+            let path = if report.is_typed(&own) { own } else { key_path!["run", run, "models"] };
+            if !is_named {
+                report.warn(&path, message, help);
+            }
+        }
+    }
+}
+
+/// Warns of bodies that overlap at the start of a run.
+fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let mut found = BTreeSet::new();
+    let mut known: BTreeSet<&[usize]> = BTreeSet::new();
+    let simulated = scene.runs.iter().filter(|run| run.recording.is_none());
+    for run in simulated.filter(|run| known.insert(run.of.as_slice())) {
+        let pairs = overlaps(&run.bodies, &run.initial.position, |_| true);
+        found.extend(pairs.map(|pair| pair.map(|body| run.of[body])));
+    }
+    let Some(&[first, second]) = found.first() else { return };
+    let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
+    let more = match found.len() - 1 {
+        0 => String::new(),
+        1 => ", and so does another pair".to_owned(),
+        pairs => format!(", and so do {} other pairs", count(pairs as u128)),
+    };
+    let message = format!("{one} and {other} overlap at the start{more}: bodies go through each other");
+    report.warn(&typed.place(second), message, "move one of them, with `offset` or `lowest`, unless they may overlap");
+}
+
+/// Warns of sizes far from metres, unless a `scale` is given, and of recordings of another size.
+fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    /// Longer bodies are rarely meant to be that long (m).
+    const LONG: f64 = 50.0;
+    let length =
+        |SceneBody { body, .. }: &SceneBody| longest(body.carried.as_ref().map_or(&body.rest, |fine| &fine.rest));
+    let sizes = scene.bodies.iter().map(length).zip(typed.file.body.iter().flatten()).enumerate();
+    let long: Vec<_> = sizes.filter(|(_, (length, file))| *length >= LONG && file.scale.is_none()).collect();
+    if let Some(&(at, (length, file))) = long.first() {
+        let place = typed.place(at);
+        let more = if long.len() > 1 { ", as are others" } else { "" };
+        let length = short(length);
+        match &file.mesh {
+            Some(name) => report.warn(
+                &key_path![place; "mesh"],
+                format!("`{name}` is {length} m long{more}, as no `scale` is given"),
+                "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre",
+            ),
+            None => report.warn(
+                &place,
+                format!("{} is {length} m long{more}", scene.bodies[at].in_words()),
+                "lengths are in metres: divide those of the body by 1000 if they are in millimetres, unless it is that long",
+            ),
+        }
+    }
+    for run in 0..scene.runs.len() {
+        // Whoever gives a scale means it.
+        if !report.is_typed(&key_path!["run", run, "scale"])
+            && let Some([message, help]) = scene.misfits(run)
+        {
+            report.warn(&key_path!["run", run, "states"], message, help);
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! The time steps of runs.
+
+use super::runs::Parts;
+use crate::reading::captions::typed;
+use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::words;
+use crate::scene::Recorded;
+use crate::scene::file::{RunFile, StepFile, TimeFile};
+use crate::scene::step::NamedStep;
+use crate::sim::Integrator;
+use crate::sim::stability::Stability;
+
+/// The most steps of a run. Beyond, double precision cannot distinguish the times of two steps.
+const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
+
+/// The steps of a recording between two frames, if the step of the program that made it is not known.
+const STEPS_OF_FRAME: f64 = 1024.0;
+
+/// What the time steps of all runs depend on.
+pub(super) struct Steps<'a> {
+    pub(super) time: &'a TimeFile,
+    runs: &'a [Option<RunFile>],
+    /// The cycle T of all runs (s).
+    cycle: f64,
+    /// The largest step for `step = "auto"` of each run (s), and the run that limits it.
+    limits: Vec<(f64, usize)>,
+}
+
+impl<'a> Steps<'a> {
+    /// The steps of runs with these parts.
+    pub(super) fn new(
+        runs: &'a [Option<RunFile>],
+        time: &'a TimeFile,
+        parts: &[Parts],
+        report: &mut Collector<'_>,
+    ) -> Self {
+        let periods = parts.iter().flat_map(Parts::iter).map(|(model, body)| model.shortest_period(body));
+        let cycle = periods.fold(f64::INFINITY, f64::min);
+        let own = own_limits(runs, time, parts);
+        warn_of_held_steps(runs, time, parts, &own, report);
+        Self { time, runs, cycle, limits: limits(own, &sharing(runs, time)) }
+    }
+
+    /// The integrator of a run.
+    pub(super) fn integrator(&self, run: &RunFile) -> Integrator {
+        run.integrator.unwrap_or(self.time.integrator)
+    }
+
+    /// The time step of a run (s), and its tolerance if its integrator chooses its steps; `None` after reporting a mistake.
+    pub(super) fn of(
+        &self,
+        at: usize,
+        run: &RunFile,
+        recording: Option<&Recorded>,
+        report: &mut Collector<'_>,
+    ) -> Option<(f64, Option<f64>)> {
+        let (time, integrator) = (self.time, self.integrator(run));
+        if let Some((path, message, help)) = misplaced(at, run, time, integrator).filter(|_| recording.is_none()) {
+            report.at(&path, message, help);
+            return None;
+        }
+        let frame = 1.0 / time.frames_per_second;
+        let recorded = recording.map(|recording| recording.step.unwrap_or(frame / STEPS_OF_FRAME));
+        let (own, shared) = (["step", "states"][usize::from(recorded.is_some())], key_path!["time", "step"]);
+        let own = key_path!["run", at, own];
+        let path = if recorded.is_some() || run.step.is_some() { &own[..] } else { &shared[..] };
+        let tolerance = run.tolerance.or(time.tolerance).unwrap_or(Integrator::TOLERANCE);
+        let tolerance = (integrator.is_adaptive() && recorded.is_none()).then_some(tolerance);
+        let typed = run.step.as_ref().or(time.step.as_ref()).unwrap_or(&StepFile::DEFAULT);
+        let found = match (recorded, typed) {
+            (Some(step), _) => Some(step),
+            _ if tolerance.is_some() => Some(frame),
+            (None, StepFile::Seconds(seconds)) => Some(*seconds),
+            (None, StepFile::Named(named)) => named.of(self.cycle).or_else(|| automatic(self.limits[at].0, time)),
+        };
+        let Some(step) = found else {
+            let (limit, of) = self.limits[at];
+            let of = self.runs[of].as_ref()?;
+            let (message, help) = no_limit(of, self.integrator(of), limit);
+            report.at(path, message, help);
+            return None;
+        };
+        if let Some((message, help)) = self.refusal(run, step, recorded.is_some(), tolerance.is_some()) {
+            report.at(path, message, help);
+            return None;
+        }
+        Some((step, tolerance))
+    }
+
+    /// Why a step (s) cannot be taken, and the remedy.
+    fn refusal(&self, run: &RunFile, step: f64, is_recorded: bool, is_chosen: bool) -> Option<(String, String)> {
+        let (duration, cycle) = (self.time.duration, self.cycle);
+        if !(step.is_normal() && step > 0.0 && duration / step <= MOST_STEPS) {
+            let message = format!("the time step is {step:e} s with T = {cycle:.4e} s: such steps cannot be counted");
+            return Some((message, "make it larger, or masses and stiffness less extreme".to_owned()));
+        }
+        (step > duration && duration > 0.0 && !is_chosen).then(|| {
+            let [name, step, duration] = [words::quoted(&run.name), words::short(step), words::short(duration)];
+            let help = match is_recorded {
+                true => "make `step` in its archive smaller, or the duration longer".to_owned(),
+                false => format!("T = {} s; make the step smaller or the duration longer", words::short(cycle)),
+            };
+            let scene = format!("longer than the whole scene of {duration} s: nothing would move");
+            (format!("the time step of {name} is {step} s, {scene}"), help)
+        })
+    }
+}
+
+/// The place, message and remedy for a `step` with an integrator that chooses its own steps, or a tolerance with
+/// another integrator.
+fn misplaced(
+    at: usize,
+    run: &RunFile,
+    time: &TimeFile,
+    integrator: Integrator,
+) -> Option<(Vec<PathPart<'static>>, String, String)> {
+    let own = |key| key_path!["run", at, key].to_vec();
+    let common = |key| key_path!["time", key].to_vec();
+    let name = words::quoted(&typed(&integrator));
+    if integrator.is_adaptive() {
+        let path = if run.step.is_some() { own("step") } else { common("step") };
+        let is_typed = run.step.is_some() || time.step.is_some() && run.integrator.is_none();
+        let message = format!("{name} chooses its own steps");
+        return is_typed.then(|| (path, message, "give `tolerance` in place of `step`, such as 1e-6".into()));
+    }
+    let path = if run.tolerance.is_some() { own("tolerance") } else { common("tolerance") };
+    let is_typed = run.tolerance.is_some() || time.tolerance.is_some() && run.integrator.is_none();
+    let message = format!("{name} has fixed steps and no tolerance");
+    let has_step = run.step.is_some() || time.step.is_some();
+    let remedy = if has_step { "remove `tolerance`" } else { "give `step` in its place" };
+    is_typed.then(|| (path, message, format!("{remedy}, or write `integrator = \"dormand-prince\"`")))
+}
+
+/// Whether a step is chosen by this program.
+fn is_auto(step: &Option<StepFile>) -> bool {
+    matches!(step, Some(StepFile::Named(NamedStep::Auto)))
+}
+
+/// The runs that share `step = "auto"` of the scene.
+fn sharing(runs: &[Option<RunFile>], time: &TimeFile) -> Vec<usize> {
+    let shares = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
+    (0..runs.len()).filter(|&at| runs[at].as_ref().is_some_and(shares)).collect()
+}
+
+/// The largest step (s) for each run with `step = "auto"`, infinite for others: the largest stable one, or for a model that moves its
+/// nodes itself the one that is taken.
+fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<f64> {
+    let sharing = sharing(runs, time);
+    let limit = |(at, (run, parts)): (usize, (&Option<RunFile>, &Parts))| {
+        let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || sharing.contains(&at)) else {
+            return f64::INFINITY;
+        };
+        let integrator = run.integrator.unwrap_or(time.integrator);
+        let Parts { bodies, models, grips, .. } = parts;
+        let each = Stability::of_each(bodies, models, integrator, grips, time.duration);
+        let largest = Stability::of_all(&each).largest;
+        if parts.is_projected() { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
+    };
+    runs.iter().zip(parts).enumerate().map(limit).collect()
+}
+
+/// The largest step (s) for each run, and the run that limits it: the run itself, or among the runs that share the scene's step the one
+/// with the least.
+fn limits(own: Vec<f64>, sharing: &[usize]) -> Vec<(f64, usize)> {
+    let mut limits: Vec<_> = own.into_iter().zip(0..).collect();
+    let least = sharing.iter().map(|&at| limits[at]).min_by(|one, other| one.0.total_cmp(&other.0));
+    sharing.iter().zip(least.into_iter().cycle()).for_each(|(&at, least)| limits[at] = least);
+    limits
+}
+
+/// Warns of a model that moves its nodes itself, if its short steps are those of all runs that share `step = "auto"` of the scene.
+fn warn_of_held_steps(
+    runs: &[Option<RunFile>],
+    time: &TimeFile,
+    parts: &[Parts],
+    own: &[f64],
+    report: &mut Collector<'_>,
+) {
+    let (holding, others): (Vec<usize>, Vec<usize>) =
+        sharing(runs, time).into_iter().partition(|&at| parts[at].is_projected());
+    let step = |of: &[usize]| automatic(of.iter().map(|&at| own[at]).fold(f64::INFINITY, f64::min), time);
+    if let (Some(held), Some(free)) = (step(&holding), step(&others))
+        && held < free
+    {
+        let names: Vec<_> = holding.iter().filter_map(|&at| Some(&runs[at].as_ref()?.name)).collect();
+        let names = words::list(&names, "and", words::quoted);
+        let [held, free] = [held, free].map(words::short);
+        let message = format!("all runs take steps of {held} s, because of {names}; the others would take {free} s");
+        let help = format!("write `step = \"auto\"` for {names} alone, unless all runs need the same step");
+        report.warn(&key_path!["time", "step"], message, help);
+    }
+}
+
+/// The longest step (s) that divides the time between two frames into a whole number of steps, and is at most the
+/// documented share of the largest stable one (s); `None` if there is none.
+fn automatic(limit: f64, time: &TimeFile) -> Option<f64> {
+    let frame = 1.0 / time.frames_per_second;
+    // In a scene with one frame steps divide its duration.
+    let frame = if time.duration > 0.0 { frame.min(time.duration) } else { frame };
+    (limit > 0.0 && limit.is_finite()).then(|| frame / (frame / (Stability::SHARE * limit)).ceil())
+}
+
+/// The message and remedy for a run without a step by `step = "auto"`.
+fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, String) {
+    let (name, method) = (words::quoted(&run.name), words::quoted(&typed(&integrator)));
+    match limit > 0.0 {
+        true => (
+            format!("`step = \"auto\"` finds no limit for {name}: {method} is stable with any step"),
+            "give a step that resolves the motion".into(),
+        ),
+        false => (
+            format!("`step = \"auto\"` finds no step for {name}: {method} is never stable without damping"),
+            "give a step, or use another integrator".into(),
+        ),
+    }
+}
