@@ -2,6 +2,7 @@
 
 use super::file::ModelFile;
 use crate::reading::words::{count, several, size};
+use localshape_mesh as mesh;
 use std::collections::BTreeMap;
 
 /// The largest accepted scene. Larger scenes are refused before memory is allocated for them.
@@ -34,6 +35,14 @@ impl Limits {
         Self { nodes: u64::MAX, corners: u64::MAX, springs: u64::MAX, file: u64::MAX, recorded: u64::MAX };
 }
 
+impl Limits {
+    /// Those of a mesh file.
+    pub(super) fn of_mesh(&self) -> mesh::Limits {
+        let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
+        mesh::Limits { points: most(self.nodes), corners: most(self.corners) }
+    }
+}
+
 /// The size of a body before it is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BodySize {
@@ -54,12 +63,12 @@ pub(super) struct Excess {
     /// The remedy.
     pub(super) help: String,
     /// What to change.
-    pub(super) cause: Cause,
+    pub(super) of: Largest,
 }
 
 /// The cause of an excess.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cause {
+pub(super) enum Largest {
     /// The largest body.
     Body(usize),
     /// The model with the most springs: a run, and a place among its models.
@@ -128,7 +137,7 @@ pub(super) fn excess(
     let allow = |less: &str| format!("{less}, or allow it with --allow-large (in code, `Limits::NONE`)");
     let largest = (0..bodies.len()).max_by_key(|&body| (bodies[body].nodes, bodies[body].corners()))?;
     let less = less(largest);
-    let excess = |message, help| Some(Excess { message, help, cause: Cause::Body(largest) });
+    let excess = |message, help| Some(Excess { message, help, of: Largest::Body(largest) });
     if nodes.max(elements) > u128::from(u32::MAX) {
         excess(format!("{asked}: more nodes or elements than 32-bit indices can count"), less.to_owned())
     } else if nodes > limits.nodes.into() {
@@ -142,7 +151,7 @@ pub(super) fn excess(
         let help = allow("put fewer springs on each element, such as springs = \"edges\"");
         let models = (0..).zip(runs).flat_map(|(run, parts)| (0..).zip(parts).map(move |(at, part)| (run, at, part)));
         let (run, at, _) = models.max_by_key(|(_, _, part)| springs_of(part))?;
-        Some(Excess { message, help, cause: Cause::Model(run, at) })
+        Some(Excess { message, help, of: Largest::Model(run, at) })
     } else if !is_given(memory) {
         let help = "make the body smaller, or take a larger machine";
         excess(format!("{asked}, more than this machine has"), help.to_owned())

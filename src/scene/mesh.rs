@@ -50,9 +50,8 @@ impl MeshFile {
             };
             return Err((format!("{found}; {expected}"), help));
         };
-        let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
         let (mut hash, mut left) = (Sha256::new_with_prefix(&bytes), limits.file - bytes.len() as u64);
-        let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
+        let limits = limits.of_mesh();
         // All files together may be as long as one.
         let mut beside = |name: &str| {
             let path = path.with_file_name(name);

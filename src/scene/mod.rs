@@ -9,6 +9,7 @@
 //! from a NumPy archive, read by `npz`, or from a `mesh`. Fonts are read by `font`.
 
 mod builder;
+mod charts;
 mod digest;
 #[cfg(feature = "render")]
 mod drawn;
@@ -25,12 +26,14 @@ mod plausible;
 mod recording;
 pub(crate) mod reference;
 mod resolve;
+mod run;
 mod schema;
 mod sequence;
 mod stability;
 mod step;
 mod structure;
 mod summary;
+mod syntax;
 mod turning;
 
 pub use crate::reading::captions::description;
@@ -43,23 +46,17 @@ pub use limits::Limits;
 pub(crate) use load::is_figure_file;
 pub use recording::Recorded;
 pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};
+pub use run::Run;
 pub use schema::schema;
 pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 
-use crate::colour::Colour;
 use crate::look::{Subject, SubjectBody, SubjectRun, View};
-use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{list, nearest, quoted};
-use crate::sim::geometry;
-use crate::sim::model::{ElasticModel, Report};
-use crate::sim::{Assembly, Body, Dimension, Grip, Integrator, Obstacle, Shape};
-use crate::sim::{Diagnostic, Kernel, Moment, State};
+use crate::sim::{Body, Dimension, Moment, Obstacle, State};
 use glam::DVec3;
 use localshape_mesh::Group;
 #[cfg(feature = "render")]
 use std::io;
-use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -140,138 +137,6 @@ fn subject<'a>(bodies: &'a [SceneBody], runs: &'a [Run], gravity: DVec3, obstacl
         SubjectRun { name, step: *step, of, nodes: bodies.whole().len(), models, is_gripped: !one.grips.is_empty() }
     };
     Subject { bodies: bodies.iter().map(body).collect(), gravity, obstacles, runs: runs.iter().map(run).collect() }
-}
-
-/// Bodies of the scene with their models, and one panel of the picture.
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// Unique in its scene.
-    pub name: String,
-    /// The places of its bodies in [`Scene::bodies`].
-    pub of: Vec<usize>,
-    /// Its bodies. Runs of the same bodies share them.
-    pub bodies: Arc<Assembly>,
-    /// The initial state of all its bodies.
-    pub initial: State,
-    /// The elastic model of each body; empty for a recording.
-    pub models: Vec<Arc<dyn ElasticModel>>,
-    /// The recording that it shows.
-    pub recording: Option<Arc<Recorded>>,
-    /// Kinematic constraints: nodes that are held or dragged, counted over all its bodies.
-    pub grips: Vec<Grip>,
-    /// The integrator.
-    pub integrator: Integrator,
-    /// Time step ΔT (s); the time between frames for an integrator that chooses its steps.
-    pub step: f64,
-    /// The error allowed in each step of an integrator that chooses its steps, as a share of the body's size; `None`
-    /// for others.
-    pub tolerance: Option<f64>,
-    /// The code that computes a step.
-    pub kernel: Kernel,
-    /// The run's place in the palette, which gives its line ([`Self::line`]). In a figure of several scenes, runs of
-    /// one name have one place.
-    pub(crate) place: usize,
-    /// A chosen colour of the run's lines. Other runs get different colours.
-    pub colour: Option<Colour>,
-}
-
-impl Scene {
-    /// The diagnostics whose time series pictures need; `None` if pictures do not show the course of the whole scene.
-    /// Charts, paths, cameras that follow, and the drawn sizes of plates and walls show it.
-    pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
-        let view = &self.view;
-        let is_flat = self.dimension() == Dimension::Plane;
-        let ground = geometry::ground(&self.obstacles, 0.0);
-        let has_size = |one: &Obstacle| match one.shape {
-            Shape::Plate { .. } => true,
-            Shape::Floor { .. } => one.floor(0.0) != ground,
-            _ => false,
-        };
-        let needed = !view.charts.is_empty()
-            || !view.paths.is_empty()
-            || view.camera.follow
-            || (!is_flat && self.obstacles.iter().any(has_size));
-        needed.then_some(&view.charts[..])
-    }
-
-    /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
-    fn check_charts(charts: &[Diagnostic], scenes: &[Self], table: &'static str, report: &mut Collector<'_>) {
-        for (index, chart) in charts.iter().enumerate() {
-            let (path, found) = (key_path![table, "charts", index], quoted(&typed(chart)));
-            if let Some(first) = charts[..index].iter().position(|other| other == chart) {
-                let message = format!("`{table}.charts[{index}]` is {found}, as is `{table}.charts[{first}]`");
-                report.at(&path, message, "expected each diagnostic once; remove one".to_owned());
-            } else if let Some(why) = scenes.iter().map(|scene| scene.lacks(*chart)).reduce(Option::and).flatten() {
-                report.at(&path, format!("`{table}.charts[{index}]` is {found}, which no run has"), why);
-            }
-        }
-    }
-
-    /// The message for a diagnostic that no run has, with the diagnostics that charts can show; `None` if a run may
-    /// have it.
-    fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
-        let has = |has: &dyn Fn(&dyn ElasticModel, &SceneBody) -> bool| {
-            self.runs.iter().any(|run| run.parts(self).any(|(model, body)| has(model, body)))
-        };
-        // Only the model can tell, from its forces.
-        let has_residual = |model: &dyn ElasticModel, SceneBody { body, initial, .. }: &SceneBody| {
-            let (forces, memory) = (model.prepare(body), model.start(body, &initial.position));
-            let report = forces.report(initial.nodes(), &memory, &mut |_, _, _| ());
-            report.residual(Report::ROTATION).is_some()
-        };
-        let (exists, why) = match diagnostic {
-            Diagnostic::Elastic | Diagnostic::Energy => {
-                (has(&|_, _| true), "recordings have none; plot another diagnostic, such as \"kinetic\"")
-            }
-            Diagnostic::GlobalRotations => (
-                has(&|model, of| model.counts_global(&of.body)),
-                "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
-            ),
-            Diagnostic::Broken => (
-                has(&|model, of| model.breaks(&of.body).is_some()),
-                "only models with `breaks_at` break; give it, or plot another diagnostic, such as \"turned_over\"",
-            ),
-            Diagnostic::Residual => (
-                has(&has_residual),
-                "models without rotations, such as springs, have none; plot another diagnostic, such as \"turned_over\"",
-            ),
-            _ => return None,
-        };
-        (!exists).then_some(why)
-    }
-}
-
-impl Run {
-    /// All its bodies as one.
-    pub fn body(&self) -> &Arc<Body> {
-        self.bodies.whole()
-    }
-
-    /// The names of its bodies in order; none if its only body has no name.
-    pub(crate) fn body_names<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a str> {
-        self.of.iter().map(|&body| &*scene.bodies[body].name).filter(|name| !name.is_empty())
-    }
-
-    /// The name and the nodes of each of its bodies, if it has several.
-    pub(crate) fn several<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a str, Range<usize>)> + Clone {
-        let bodies = if self.of.len() > 1 { self.of.len() } else { 0 };
-        (0..bodies).map(|body| (&*scene.bodies[self.of[body]].name, self.bodies.nodes(body)))
-    }
-
-    /// Each model with its body.
-    pub(crate) fn parts<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a dyn ElasticModel, &'a SceneBody)> {
-        self.models.iter().map(|model| &**model).zip(self.of.iter().map(|&body| &scene.bodies[body]))
-    }
-
-    /// Each model with its body at rest.
-    pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
-        self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
-    }
-
-    /// The shortest period of a node of any of its bodies (s).
-    pub(crate) fn shortest_period(&self) -> f64 {
-        self.models_and_bodies().map(|(model, body)| model.shortest_period(body)).fold(f64::INFINITY, f64::min)
-    }
 }
 
 impl Scene {

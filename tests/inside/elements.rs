@@ -1,6 +1,7 @@
 //! Tests of `src/scene/resolve/elements.rs`.
 
 use super::*;
+use crate::scene::resolve::disorder::mended;
 
 #[test]
 fn the_mended_order_turns_an_element_right_side_out() {

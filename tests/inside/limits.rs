@@ -22,9 +22,9 @@ fn beyond(size: &BodySize, models: &[ModelFile], limits: &Limits) -> Option<Exce
 fn the_default_allows_a_block_of_two_hundred_cells_a_side_and_not_of_a_thousand() {
     let limits = Limits::default();
     assert_eq!(beyond(&block(200), &models(["'shape-based'", "'mass-spring'"]), &limits), None);
-    let Excess { message, help, place } = beyond(&block(1000), &models(["'shape-based'"]), &limits).unwrap();
+    let Excess { message, help, of } = beyond(&block(1000), &models(["'shape-based'"]), &limits).unwrap();
     assert!(message.starts_with("this makes 1 003 003 001 nodes and 1 000 000 000 elements"), "{message}");
-    assert!(help.contains("fewer cells") && cause == Cause::Body(0), "{help}");
+    assert!(help.contains("fewer cells") && of == Largest::Body(0), "{help}");
     let many = models(["'shape-based'"; 4]);
     assert!(beyond(&block(200), &many, &limits).unwrap().message.contains("of all runs"));
 }
@@ -33,9 +33,9 @@ fn the_default_allows_a_block_of_two_hundred_cells_a_side_and_not_of_a_thousand(
 fn springs_are_counted_by_the_topology_asked_for() {
     let polygon = BodySize::new(60_000, [(60_000, 1)]);
     let found = |model| beyond(&polygon, &models(["'shape-based'", model]), &Limits::default());
-    let Excess { message, help, place } = found("'mass-spring', springs = 'all'").unwrap();
+    let Excess { message, help, of } = found("'mass-spring', springs = 'all'").unwrap();
     assert!(message.contains("up to 1 799 970 000 springs"), "{message}");
-    assert!(help.contains("springs = \"edges\"") && cause == Cause::Model(1, 0), "{help}");
+    assert!(help.contains("springs = \"edges\"") && of == Largest::Model(1, 0), "{help}");
     // The default topology has the diagonals of the polygon, which is its own face.
     assert!(found("'mass-spring'").is_some());
     assert_eq!(found("'mass-spring', springs = 'edges'"), None);
@@ -56,11 +56,11 @@ fn all_bodies_of_all_runs_count() {
     assert_eq!(found(&[all, again], Limits { springs, ..limits }), None);
     assert!(
         found(&[all, again], Limits { springs: springs - 1, ..limits })
-            .is_some_and(|one| one.cause == Cause::Model(0, 1))
+            .is_some_and(|one| one.of == Largest::Model(0, 1))
     );
-    let Excess { message, place, .. } = found(&[all, again, again], limits).unwrap();
+    let Excess { message, of, .. } = found(&[all, again, again], limits).unwrap();
     assert!(message.contains("the elements of all runs have 304 nodes"), "{message}");
-    assert_eq!(cause, Cause::Body(1));
+    assert_eq!(of, Largest::Body(1));
     let message = found(&[all], Limits { nodes: limits.nodes - 1, ..limits }).unwrap().message;
     assert!(message.starts_with("all bodies together make 99 nodes, 36 elements"), "{message}");
 }

@@ -3,7 +3,9 @@
 
 pub(crate) mod built_in;
 mod file;
+mod forces;
 mod resolve;
+mod sheet;
 
 use super::Scene;
 use super::error::SceneError;

@@ -1,6 +1,7 @@
 //! The body as typed.
 
 use super::{Coordinates, Positive};
+use localshape_mesh::Fill;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -182,6 +183,21 @@ pub(in crate::scene) enum FillKind {
     Tetrahedra,
     /// Cubes cut at the surface into polyhedra.
     Polyhedra,
+}
+
+impl FillKind {
+    /// All kinds.
+    pub(in crate::scene) const ALL: [Self; 4] = [Self::Cubes, Self::Graded, Self::Tetrahedra, Self::Polyhedra];
+
+    /// Elements of this kind with edges of a length (m).
+    pub(in crate::scene) fn with_side(self, side: f64) -> Fill {
+        match self {
+            Self::Cubes => Fill::Cubes { side },
+            Self::Graded => Fill::Graded { side },
+            Self::Tetrahedra => Fill::Tetrahedra { side },
+            Self::Polyhedra => Fill::Polyhedra { side },
+        }
+    }
 }
 
 /// An axis of a mesh file.

@@ -4,10 +4,11 @@ use super::{CELLS, MeshFile, crossing, doubts, left, longest, mended, parts};
 use crate::reading::beside::Wrong;
 use crate::reading::captions;
 use crate::reading::words::{count, list, quoted, several, short};
+use crate::scene::file::FillKind;
 use crate::scene::limits::Limits;
 use crate::sim::geometry::{bounds, volumes_at_rest};
 use crate::sim::{Body, Dimension};
-use localshape_mesh::{Fill, Flaws, Group, Measures, Mesh, Surface, Volume, fill};
+use localshape_mesh::{Flaws, Group, Measures, Mesh, Surface, Volume, fill};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -101,8 +102,8 @@ struct FlawNames {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct FillSummary {
-    /// Its name in scenes.
-    with: &'static str,
+    /// Its kind.
+    with: FillKind,
     /// The side of its lattice.
     side: f64,
     elements: usize,
@@ -160,15 +161,9 @@ impl MeshSummary {
         let Measures { volume, area, closed, low, high, .. } = surface.measures();
         let longest = longest(&surface.points);
         let side = longest / f64::from(CELLS);
-        let most = usize::try_from(limits.nodes).unwrap_or(usize::MAX).min(u32::MAX as usize);
-        let fills = [
-            ("cubes", Fill::Cubes { side }),
-            ("graded", Fill::Graded { side }),
-            ("tetrahedra", Fill::Tetrahedra { side }),
-            ("polyhedra", Fill::Polyhedra { side }),
-        ];
+        let most = limits.of_mesh().points;
         let (mut overlap, mut of_cage) = (0.0, None);
-        let fills = fills.map(|(with, chosen)| match fill(&surface, chosen, most) {
+        let fills = FillKind::ALL.map(|with| match fill(&surface, with.with_side(side), most) {
             Ok(filled) => {
                 overlap = filled.cage.overlap.max(overlap);
                 of_cage.get_or_insert_with(|| doubts(&filled.cage, volume, side, longest, false));
@@ -266,7 +261,7 @@ impl fmt::Display for MeshSummary {
                             )
                         }
                     };
-                    line(fill.with, &size)?;
+                    line(&captions::typed(&fill.with), &size)?;
                 }
             }
         }

@@ -5,7 +5,7 @@ use super::body::{BodyTable, Content};
 use super::lists::{ListSource, Lists};
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, several, short};
-use crate::scene::file::{FillFile, FillKind, LARGEST, Positive, Up};
+use crate::scene::file::{FillFile, LARGEST, Positive, Up};
 use crate::scene::limits::Limits;
 use crate::scene::mesh::{self, CELLS, MeshFile};
 use crate::sim::{Dimension, IndexLists};
@@ -153,13 +153,7 @@ fn chosen(typed: &FillFile, longest: f64) -> (Fill, f64) {
         Some(Positive(side)) => side,
         None => longest / f64::from(typed.cells.unwrap_or(CELLS)),
     };
-    let chosen = match typed.with {
-        FillKind::Cubes => Fill::Cubes { side },
-        FillKind::Graded => Fill::Graded { side },
-        FillKind::Tetrahedra => Fill::Tetrahedra { side },
-        FillKind::Polyhedra => Fill::Polyhedra { side },
-    };
-    (chosen, side)
+    (typed.with.with_side(side), side)
 }
 
 /// How to fill a body of a length (m) with few enough elements: with those of a side (m), or with more allowed if they are limited.

@@ -4,6 +4,7 @@
 mod archive;
 mod body;
 mod choice;
+mod disorder;
 mod doubts;
 mod elements;
 mod grips;
@@ -11,6 +12,7 @@ mod lists;
 mod mass;
 mod mesh;
 mod motion;
+mod nodes;
 mod obstacles;
 mod recordings;
 mod runs;
@@ -226,14 +228,14 @@ fn bodies<'a>(
     };
     let runs: Vec<limits::RunBodies<'a>> = choices.iter().map(|choice| run(choice.as_ref())).collect();
     let less = |body: usize| typed[body].as_ref().map_or("", TypedBody::less);
-    let Some(Excess { message, help, cause }) = limits::excess(&sizes, &runs, limits, less) else {
+    let Some(Excess { message, help, of }) = limits::excess(&sizes, &runs, limits, less) else {
         return typed.into_iter().map(|body| body?.resolve(report)).collect();
     };
-    match cause {
-        limits::Cause::Body(body) => {
+    match of {
+        limits::Largest::Body(body) => {
             typed[body].iter().for_each(|body| body.too_large(message.clone(), help.clone(), report));
         }
-        limits::Cause::Model(run, at) => {
+        limits::Largest::Model(run, at) => {
             let path = choices[run].as_ref().map(|choice| &choice.models[at].path);
             path.into_iter().for_each(|path| report.at(&key_path![path; "springs"], message.clone(), help.clone()));
         }

@@ -1,0 +1,56 @@
+//! Times and time steps as typed.
+
+use super::Positive;
+use crate::scene::step::NamedStep;
+use crate::sim::Integrator;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Duration, time step and frame rate of a scene.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct TimeFile {
+    /// Simulated time (s); 0 shows only the start.
+    #[schemars(range(min = 0.0))]
+    pub(in crate::scene) duration: f64,
+    /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
+    /// the mass of the lightest node and the largest stiffness of all bodies and runs; of `volume-springs` that of a spring or that of
+    /// an element against changes of its volume. `"auto"` takes equal steps between two
+    /// frames, at most half of the largest step that is predicted to be stable for every run without a step of its own.
+    /// `localshape check` prints that prediction. `xpbd`, stable with any step, takes at most 1/1200 s.
+    #[schemars(extend("default" = "T/50"))]
+    pub(in crate::scene) step: Option<StepFile>,
+    /// The error allowed in each step of `integrator = "dormand-prince"`, as a share of the size of the body, in place
+    /// of `step`. Below 1e-11 round-off is larger. For a body at rest on an obstacle, a tenth of the tolerance takes three times as long. Default: 1e-6.
+    #[schemars(range(min = 1e-11, max = 0.1))]
+    pub(in crate::scene) tolerance: Option<f64>,
+    /// Frames per second of simulated time (1/s). Frames lie within the duration: 1 s has frames 0 to 29 at 29.97 a second.
+    #[serde(default = "sixty")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) frames_per_second: f64,
+    /// Time between rows of `diagnostics.csv` (s), which then has rows between frames, of the nearest steps. With the time
+    /// step or less each step has a row, which takes several times as long as a step. Default: only frames have rows.
+    pub(in crate::scene) every: Option<Positive>,
+    /// The integrator, which advances positions and velocities by one step.
+    #[serde(default)]
+    pub(in crate::scene) integrator: Integrator,
+}
+
+fn sixty() -> f64 {
+    60.0
+}
+
+/// A time step as typed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(in crate::scene) enum StepFile {
+    /// A time step in seconds, or a fraction of the cycle T such as `"T/50"`.
+    Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// A fraction of the cycle T, or `auto`.
+    Named(#[schemars(extend("format" = "fraction-of-T"))] NamedStep),
+}
+
+impl StepFile {
+    /// The step of a scene that gives none.
+    pub(in crate::scene) const DEFAULT: Self = Self::Named(NamedStep::Divided(50.0));
+}

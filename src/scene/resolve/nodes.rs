@@ -1,0 +1,262 @@
+//! The nodes that a constraint selects.
+
+use super::{choice, vector};
+use crate::reading::captions::typed;
+use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::words::{count, fine, list, nearest, quoted};
+use crate::scene::SceneBody;
+use crate::scene::file::{NodesFile, RegionFile, Side};
+use crate::scene::summary::corners;
+use crate::sim::{Body, Dimension};
+use glam::DVec3;
+use std::cell::OnceCell;
+use std::collections::HashMap;
+
+/// A body in which nodes are selected, and its layers of nodes along each axis.
+pub(super) struct Layered<'a> {
+    body: &'a SceneBody,
+    layers: OnceCell<Vec<Layers>>,
+}
+
+impl<'a> Layered<'a> {
+    pub(super) fn new(body: &'a SceneBody) -> Self {
+        Self { body, layers: OnceCell::new() }
+    }
+
+    /// The nodes that start where a region with some round-off (m) is.
+    fn inside(&self, is_inside: impl Fn(DVec3, f64) -> bool) -> Vec<u32> {
+        // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
+        let close = ROUND_OFF * self.body.body.extent();
+        let position = (0..).zip(&self.body.initial.position);
+        position.filter(|(_, at)| is_inside(**at, close)).map(|(node, _)| node).collect()
+    }
+}
+
+/// The selected nodes of each body, in rising order: those of the body of a `name`, or of all. `None` after reporting a mistake in a
+/// constraint at a path.
+pub(super) fn select(
+    name: Option<&str>,
+    typed: &NodesFile,
+    bodies: &[Layered<'_>],
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Vec<Vec<u32>>> {
+    let chosen = match name {
+        Some(name) => {
+            let names: Vec<_> = bodies.iter().map(|one| one.body.name.as_str()).collect();
+            let body = choice::find(name, &names, &key_path![path; "body"], report)?;
+            body..body + 1
+        }
+        None => 0..bodies.len(),
+    };
+    let path = key_path![path; "nodes"];
+    let found = match (typed, &bodies[chosen.clone()]) {
+        (NodesFile::List(list), [only]) => vec![listed(list, only.body, &path, report)?],
+        (NodesFile::List(_), several) => {
+            let message =
+                format!("`{}` is a list of nodes, but the scene has {} bodies", written(&path), several.len());
+            let help =
+                several.first().map(|first| format!("name their body, such as body = {}", quoted(&first.body.name)));
+            report.at(&path, message, help);
+            return None;
+        }
+        (NodesFile::Named(name), bodies) => named(name, bodies, &path, report)?,
+        (NodesFile::Region(region), bodies) => within(region, bodies, &path, report)?,
+    };
+    let mut nodes = vec![Vec::new(); bodies.len()];
+    nodes.splice(chosen, found);
+    Some(nodes)
+}
+
+fn listed(list: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
+    let (before, count) = (report.total(), body.body.len());
+    let mut first = HashMap::new();
+    for (place, &node) in list.iter().enumerate() {
+        let at = key_path![path; place];
+        if node as usize >= count {
+            let message = format!("there is no node {node}; {} has nodes 0 to {}", body.in_words(), count - 1);
+            report.at(&at, message, None);
+        } else if first.insert(node, place).is_some() {
+            report.at(&at, format!("node {node} occurs twice in `{}`", written(path)), None);
+        }
+    }
+    let mut nodes = list.to_vec();
+    nodes.sort_unstable();
+    (report.total() == before).then_some(nodes)
+}
+
+/// The nodes of each body: of its group with this name, or else of its side at rest.
+fn named(
+    name: &str,
+    bodies: &[Layered<'_>],
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Vec<Vec<u32>>> {
+    /// The most groups that are named in a message.
+    const NAMED: usize = 20;
+    let bodies: Vec<_> = bodies.iter().map(|one| one.body).collect();
+    let of_body = |body: &&SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
+    let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
+    let is_flat = bodies[0].body.dimension == Dimension::Plane;
+    let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
+    let side = Side::ALL.into_iter().find(|side| typed(side) == name);
+    let there = side.filter(is_there);
+    if there.is_some() || found.iter().any(Option::is_some) {
+        let of_side = |body: &SceneBody| there.map(|side| of_side(side, &body.body)).unwrap_or_default();
+        let nodes = found.into_iter().zip(&bodies).map(|(group, body)| group.unwrap_or_else(|| of_side(body)));
+        return Some(nodes.collect());
+    }
+    if side.is_some() {
+        let (side, body) = (quoted(name), bodies[0].in_words());
+        let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
+        report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
+        return None;
+    }
+    let sides: Vec<String> = Side::ALL.iter().filter(|side| is_there(side)).map(typed).collect();
+    let mut groups: Vec<&str> = bodies.iter().flat_map(|body| &body.groups).map(|group| group.name.as_str()).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    let known: Vec<&str> = groups.iter().copied().chain(sides.iter().map(String::as_str)).collect();
+    let expected = match groups.len() {
+        0 => format!("expected {}", list(&sides, "or", quoted)),
+        more if more > NAMED => format!("expected a side, or one of the {} groups of the mesh", count(more as u128)),
+        _ => {
+            format!("expected {}, or a group of the mesh: {}", list(&sides, "or", quoted), list(&groups, "or", quoted))
+        }
+    };
+    let help = nearest(name, &known).map(|near| format!("did you mean {}?", quoted(near)));
+    report.at(path, format!("`{}` is {}; {expected}", written(path), quoted(name)), help);
+    None
+}
+
+/// The nodes of a side of a body at rest.
+fn of_side(side: Side, body: &Body) -> Vec<u32> {
+    let outwards = match side {
+        Side::Left => DVec3::NEG_X,
+        Side::Right => DVec3::X,
+        Side::Bottom => DVec3::NEG_Y,
+        Side::Top => DVec3::Y,
+        Side::Front => DVec3::Z,
+        Side::Back => DVec3::NEG_Z,
+    };
+    let along = |node: &DVec3| node.dot(outwards);
+    let most = body.rest.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let close = ROUND_OFF * body.extent();
+    (0..).zip(&body.rest).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
+}
+
+/// The nodes of each body that start in a region.
+fn within(
+    region: &RegionFile,
+    bodies: &[Layered<'_>],
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Vec<Vec<u32>>> {
+    let dimension = bodies[0].body.body.dimension;
+    let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
+    let nodes: Vec<Vec<u32>> = match region {
+        RegionFile { of: Some(of), within: Some(within), .. } => {
+            let middle = point(of, "of")?;
+            let is_inside = |at: DVec3, close: f64| at.distance(middle) <= *within + close;
+            bodies.iter().map(|body| body.inside(is_inside)).collect()
+        }
+        RegionFile { low: Some(low), high: Some(high), .. } => {
+            let (low, high) = (point(low, "low"), point(high, "high"));
+            let (low, high) = (low?, high?);
+            if low.cmpgt(high).any() {
+                let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
+                report.at(&key_path![path; "low"], message, None);
+                return None;
+            }
+            let is_inside = |at: DVec3, close: f64| at.cmpge(low - close).all() && at.cmple(high + close).all();
+            let nodes: Vec<Vec<u32>> = bodies.iter().map(|body| body.inside(is_inside)).collect();
+            bodies.iter().zip(&nodes).for_each(|(body, nodes)| warn_of_rest(nodes, body, path, report));
+            nodes
+        }
+        // The schema rules this out.
+        _ => return None,
+    };
+    if nodes.iter().all(Vec::is_empty) {
+        let message = format!("`{}` is a region without nodes at the start", written(path));
+        let all: Vec<DVec3> = bodies.iter().flat_map(|one| &one.body.initial.position).copied().collect();
+        let start = match bodies {
+            [only] => format!("{} starts", only.body.in_words()),
+            _ => "the bodies start".to_owned(),
+        };
+        report.at(path, message, format!("{start} {}", between(&all, dimension)));
+        return None;
+    }
+    Some(nodes)
+}
+
+/// Coordinates that are closer than this part of the body's longest side are equal.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Nodes with equal coordinates along one axis at rest, such as the layers of a lattice.
+#[derive(Clone)]
+struct Layers {
+    /// The layer of each node.
+    of: Vec<u32>,
+    /// The number of nodes in each layer.
+    sizes: Vec<usize>,
+}
+
+/// The layers of a body along each axis.
+fn layers_of(body: &Body) -> Vec<Layers> {
+    let close = ROUND_OFF * body.extent();
+    let along = |axis: usize| {
+        let at = |node: usize| body.rest[node][axis];
+        let mut order: Vec<usize> = (0..body.len()).collect();
+        order.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
+        let (mut of, mut sizes) = (vec![0; order.len()], Vec::new());
+        for layer in order.chunk_by(|&a, &b| at(b) - at(a) <= close) {
+            layer.iter().for_each(|&node| of[node] = sizes.len() as u32);
+            sizes.push(layer.len());
+        }
+        Layers { of, sizes }
+    };
+    (0..if body.dimension == Dimension::Plane { 2 } else { 3 }).map(along).collect()
+}
+
+/// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at
+/// another place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them
+/// along the others. Boxes around rows and corners are thin along several axes.
+fn warn_of_rest(nodes: &[u32], of: &Layered<'_>, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    let Layered { body, layers } = of;
+    let layers = layers.get_or_init(|| layers_of(&body.body));
+    let (position, dimension) = (&body.initial.position, body.body.dimension);
+    let taken = layers.iter().map(|layers| {
+        let mut taken = vec![0; layers.sizes.len()];
+        nodes.iter().for_each(|&node| taken[layers.of[node as usize] as usize] += 1);
+        taken
+    });
+    let used = |taken: &[usize]| taken.iter().filter(|&&nodes| nodes > 0).count();
+    let is_thin = |taken: &[usize]| taken.len() > 1 && (used(taken) == 1 || 2 * used(taken) < taken.len());
+    let mut thin = layers.iter().zip(taken).filter(|(_, taken): &(_, Vec<usize>)| is_thin(taken));
+    let (Some((layers, taken)), None) = (thin.next(), thin.next()) else { return };
+    let is_used = |node: usize| taken[layers.of[node] as usize] > 0;
+    let whole: Vec<DVec3> = (0..position.len()).filter(|&node| is_used(node)).map(|node| position[node]).collect();
+    let mut parts = taken.iter().filter(|&&nodes| nodes > 0);
+    let first = parts.next();
+    if nodes.len() < whole.len() && parts.all(|part| Some(part) == first) {
+        let (what, these) = match used(&taken) {
+            1 => ("a layer".to_owned(), "this layer starts"),
+            several => (format!("{} layers", count(several as u128)), "these layers start"),
+        };
+        let message = format!(
+            "`{}` takes {} of the {} nodes of {what} of {}",
+            written(path),
+            count(nodes.len() as u128),
+            count(whole.len() as u128),
+            body.in_words(),
+        );
+        report.warn(path, message, format!("{these} {}", between(&whole, dimension)));
+    }
+}
+
+/// The bounding box of points in words.
+fn between(points: &[DVec3], dimension: Dimension) -> String {
+    let words = |corner: Vec<f64>| corner.into_iter().map(fine).collect::<Vec<_>>().join(", ");
+    let [low, high] = corners(points, dimension).map(words);
+    format!("between [{low}] and [{high}] m")
+}

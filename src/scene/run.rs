@@ -1,0 +1,74 @@
+//! The runs of a scene.
+
+use super::{Recorded, Scene, SceneBody};
+use crate::colour::Colour;
+use crate::sim::model::ElasticModel;
+use crate::sim::{Assembly, Body, Grip, Integrator, Kernel, State};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Bodies of the scene with their models, and one panel of the picture.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Unique in its scene.
+    pub name: String,
+    /// The places of its bodies in [`Scene::bodies`].
+    pub of: Vec<usize>,
+    /// Its bodies. Runs of the same bodies share them.
+    pub bodies: Arc<Assembly>,
+    /// The initial state of all its bodies.
+    pub initial: State,
+    /// The elastic model of each body; empty for a recording.
+    pub models: Vec<Arc<dyn ElasticModel>>,
+    /// The recording that it shows.
+    pub recording: Option<Arc<Recorded>>,
+    /// Kinematic constraints: nodes that are held or dragged, counted over all its bodies.
+    pub grips: Vec<Grip>,
+    /// The integrator.
+    pub integrator: Integrator,
+    /// Time step ΔT (s); the time between frames for an integrator that chooses its steps.
+    pub step: f64,
+    /// The error allowed in each step of an integrator that chooses its steps, as a share of the body's size; `None`
+    /// for others.
+    pub tolerance: Option<f64>,
+    /// The code that computes a step.
+    pub kernel: Kernel,
+    /// The run's place in the palette, which gives its line ([`Self::line`]). In a figure of several scenes, runs of
+    /// one name have one place.
+    pub(crate) place: usize,
+    /// A chosen colour of the run's lines. Other runs get different colours.
+    pub colour: Option<Colour>,
+}
+
+impl Run {
+    /// All its bodies as one.
+    pub fn body(&self) -> &Arc<Body> {
+        self.bodies.whole()
+    }
+
+    /// The names of its bodies in order; none if its only body has no name.
+    pub(crate) fn body_names<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a str> {
+        self.of.iter().map(|&body| &*scene.bodies[body].name).filter(|name| !name.is_empty())
+    }
+
+    /// The name and the nodes of each of its bodies, if it has several.
+    pub(crate) fn several<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a str, Range<usize>)> + Clone {
+        let bodies = if self.of.len() > 1 { self.of.len() } else { 0 };
+        (0..bodies).map(|body| (&*scene.bodies[self.of[body]].name, self.bodies.nodes(body)))
+    }
+
+    /// Each model with its body.
+    pub(crate) fn parts<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a dyn ElasticModel, &'a SceneBody)> {
+        self.models.iter().map(|model| &**model).zip(self.of.iter().map(|&body| &scene.bodies[body]))
+    }
+
+    /// Each model with its body at rest.
+    pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
+        self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
+    }
+
+    /// The shortest period of a node of any of its bodies (s).
+    pub(crate) fn shortest_period(&self) -> f64 {
+        self.models_and_bodies().map(|(model, body)| model.shortest_period(body)).fold(f64::INFINITY, f64::min)
+    }
+}
