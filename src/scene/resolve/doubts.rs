@@ -90,14 +90,11 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
 /// Warns of steps near or above the largest stable one, or with which bodies are soft, and of integrators that are never stable.
 fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
     for run in 0..scene.runs.len() {
-        for [message, help] in scene.near_limit(run).into_iter().chain(scene.softened(run)) {
-            let own = key_path!["run", run, "step"];
-            let path = if report.is_typed(&own) { own.to_vec() } else { key_path!["time", "step"].to_vec() };
-            report.warn(&path, message, help);
-        }
-        if let Some([message, help]) = scene.never_stable(run) {
-            let own = key_path!["run", run, "integrator"];
-            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", "integrator"] };
+        let of_step = scene.near_limit(run).into_iter().chain(scene.softened(run)).map(|doubt| ("step", doubt));
+        for (key, [message, help]) in of_step.chain(scene.never_stable(run).map(|doubt| ("integrator", doubt))) {
+            // The run's own, or that of the scene.
+            let own = key_path!["run", run, key];
+            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", key] };
             report.warn(path, message, help);
         }
     }

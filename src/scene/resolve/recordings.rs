@@ -20,8 +20,7 @@ use std::sync::Arc;
 pub(super) struct ReadRecording {
     recorded: Recorded,
     own: Own,
-    /// The name of its file as typed.
-    file: String,
+    source: ListSource,
 }
 
 /// What a recording tells about its body.
@@ -35,7 +34,6 @@ enum Own {
         cells: Box<Cells>,
         /// Whether the cells are elements.
         has_elements: bool,
-        source: ListSource,
     },
 }
 
@@ -52,18 +50,19 @@ impl ReadRecording {
     pub(super) fn read(scene: &Typed<'_>, at: usize, report: &mut Collector<'_>) -> Option<Self> {
         let (folder, limits, run) = (scene.folder, scene.limits, scene.file.run[at].as_ref()?);
         let rate = scene.file.time.as_ref().map_or(1.0, |time| time.frames_per_second);
-        let (file, chosen) = run.states.as_ref()?.parts();
-        let (path, source, known) = (folder.join(file), source(at, run), report.total());
+        let (source, chosen) = run.states.as_ref()?.source(at);
+        let (ListSource { body: place, file: Some((file, _)) }, known) = (&source, report.total()) else { return None };
+        let path = folder.join(file);
         let scale = run.scale.map_or(1.0, |Positive(scale)| scale);
         let axes = Axes { up: run.up.unwrap_or_default(), scale };
         let open = |report: &mut Collector<'_>| -> Result<_, Flaw> {
             if sequence::is_one(file) {
                 let Sequence { archive, mut cells, has_elements, notes } = Sequence::read(folder, file, rate, limits)?;
-                let note = |(message, help)| report.warn(&place(at, run), format!("`{file}` {message}"), help);
+                let note = |(message, help)| report.warn(place, format!("`{file}` {message}"), help);
                 notes.into_iter().for_each(note);
                 axes.place(&mut cells.points);
                 let recorded = Archive::of(archive, &path, chosen, &run.name)?.recorded(axes, limits)?;
-                return Ok((recorded, Own::Moment { cells: Box::new(cells), has_elements, source }));
+                return Ok((recorded, Own::Moment { cells: Box::new(cells), has_elements }));
             }
             if !path.exists() {
                 let (message, help) = missing(&path, &["npz"]);
@@ -75,8 +74,8 @@ impl ReadRecording {
             }
             let mut archive = Archive::open(&path, chosen, &run.name)?;
             let (npz, name) = archive.parts();
-            check_names(&npz.names(), name, file, &place(at, run), report);
-            let own = Lists::recorded(npz, name, source, limits, report).map(|mut own| {
+            check_names(&npz.names(), name, file, place, report);
+            let own = Lists::recorded(npz, name, source.clone(), limits, report).map(|mut own| {
                 axes.place(&mut own.nodes);
                 Own::Rest(Box::new(own))
             });
@@ -89,11 +88,8 @@ impl ReadRecording {
             Ok((recorded, own.unwrap_or(Own::Nothing)))
         };
         match open(report) {
-            Ok((recorded, own)) => (report.total() == known).then(|| Self { recorded, own, file: file.to_owned() }),
-            Err(flaw) => {
-                told(at, run, file, flaw, report);
-                None
-            }
+            Ok((recorded, own)) => (report.total() == known).then_some(Self { recorded, own, source }),
+            Err(flaw) => source.tell(flaw, report),
         }
     }
 
@@ -110,29 +106,26 @@ impl ReadRecording {
     /// The recording, and whether its body is the scene's; `None` after reporting a mistake. `whole` are all bodies of the run as one.
     pub(super) fn shown(
         self,
-        at: usize,
         run: &RunFile,
         whole: &Body,
         report: &mut Collector<'_>,
     ) -> Option<(Arc<Recorded>, Shown)> {
-        let (file, known) = (self.file, report.total());
-        let (recorded, own) = match self.own.of(self.recorded, whole) {
+        let (source, known) = (self.source, report.total());
+        let (recorded, own) = match self.own.of(self.recorded, whole, &source) {
             Ok((recorded, own)) => (Arc::new(recorded), own),
-            Err(flaw) => {
-                told(at, run, &file, flaw, report);
-                return None;
-            }
+            Err(flaw) => return source.tell(flaw, report),
         };
         let start = recorded.start();
         let start = State::new(start.position, start.velocity);
         let Some((own, turned, notes)) = own else { return Some((recorded, Shown::Bodies(start))) };
         if run.bodies.is_some() {
             let help = "remove `bodies`, so that its own body is shown";
-            told(at, run, &file, Flaw::new("", "has another body than those in `bodies`").with_help(help), report);
-            return None;
+            return source.tell(Flaw::new("", "has another body than those in `bodies`").with_help(help), report);
         }
-        mesh::warn_of_turned(turned, own.elements.len(), &file, &place(at, run), report);
-        notes.iter().for_each(|note| report.warn(&place(at, run), format!("`{file}` {note}"), None));
+        if let Some((file, place)) = &source.file {
+            mesh::warn_of_turned(turned, own.elements.len(), file, place, report);
+            notes.iter().for_each(|note| report.warn(place, format!("`{file}` {note}"), None));
+        }
         let made = body::recorded(own, run.name.clone(), start, report)?;
         (report.total() == known).then(|| (recorded, Shown::Own(Box::new(made))))
     }
@@ -143,7 +136,7 @@ type Listed = (Lists, usize, Vec<String>);
 
 impl Own {
     /// The recording of a body, and the body unless it is the whole of a run.
-    fn of(self, recorded: Recorded, whole: &Body) -> Result<(Recorded, Option<Listed>), Flaw> {
+    fn of(self, recorded: Recorded, whole: &Body, source: &ListSource) -> Result<(Recorded, Option<Listed>), Flaw> {
         let dimension = whole.dimension;
         let wrong = match (dimension, recorded.columns) {
             (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
@@ -181,12 +174,12 @@ impl Own {
             {
                 Ok((recorded, None))
             }
-            Self::Moment { cells, source, .. } => {
+            Self::Moment { cells, .. } => {
                 let wrong = |error: ReadError| Flaw { help: error.help, ..Flaw::new("", error.message) };
                 let Volume { places, solids, points: nodes, cells: elements, turned, notes, .. } =
                     cells.elements(dimension).map_err(wrong)?;
                 let is_same = nodes.len() == whole.len() && are_alike(&elements, &whole.elements);
-                let own = Lists { solids, ..Lists::new(source, dimension, nodes, elements) };
+                let own = Lists { solids, ..Lists::new(source.clone(), dimension, nodes, elements) };
                 Ok((recorded.only(places), (!is_same).then_some((own, turned, notes))))
             }
         }
@@ -219,33 +212,24 @@ fn check_names(names: &[String], run: &str, file: &str, place: &KeyPath, report:
 }
 
 impl StatesFile {
-    /// The file, and the chosen run in it.
-    fn parts(&self) -> (&str, Option<&str>) {
-        match self {
-            Self::File(file) => (file, None),
-            Self::OfRun(chosen) => (&chosen.file, chosen.run.as_deref()),
-        }
+    /// Their file and its place in a run of the scene, and the chosen run in it.
+    fn source(&self, at: usize) -> (ListSource, Option<&str>) {
+        let (file, place, chosen) = match self {
+            Self::File(file) => (file, key_path!["run", at, "states"].to_vec(), None),
+            Self::OfRun(of) => (&of.file, key_path!["run", at, "states", "file"].to_vec(), of.run.as_deref()),
+        };
+        (ListSource { body: place.clone(), file: Some((file.clone(), place)) }, chosen)
     }
 }
 
-/// Reports a mistake in a file.
-fn told(at: usize, run: &RunFile, file: &str, flaw: Flaw, report: &mut Collector<'_>) {
-    let Flaw { place: found, message, help } = flaw;
-    let found = if found.is_empty() { file.to_owned() } else { format!("{file}: {found}") };
-    report.at(&place(at, run), format!("`{found}` {message}"), help);
-}
-
-/// The place of the file's name in the scene.
-fn place(at: usize, run: &RunFile) -> KeyPath {
-    match run.states {
-        Some(StatesFile::OfRun(_)) => key_path!["run", at, "states", "file"].to_vec(),
-        _ => key_path!["run", at, "states"].to_vec(),
+impl ListSource {
+    /// Reports a mistake in a recording.
+    fn tell<T>(&self, Flaw { place, message, help }: Flaw, report: &mut Collector<'_>) -> Option<T> {
+        let (file, at) = self.file.as_ref()?;
+        let found = if place.is_empty() { file.clone() } else { self.name(&place, &[]) };
+        report.at(at, format!("`{found}` {message}"), help);
+        None
     }
-}
-
-fn source(at: usize, run: &RunFile) -> ListSource {
-    let file = run.states.as_ref().map(|states| (states.parts().0.to_owned(), place(at, run)));
-    ListSource { body: place(at, run), file }
 }
 
 /// Whether these are the nodes of a body at rest. Single precision is enough.

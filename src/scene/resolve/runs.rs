@@ -83,7 +83,7 @@ impl Resolved<'_> {
                 let grips = self.grips.iter().flat_map(|grip| grip.in_run(of, &bodies)).collect();
                 return Some(Parts { of: of.clone(), bodies, initial, models, grips, recording: None });
             }
-            let (recorded, shown) = read?.shown(at, run, bodies.whole(), report)?;
+            let (recorded, shown) = read?.shown(run, bodies.whole(), report)?;
             let (of, bodies, initial) = match shown {
                 Shown::Bodies(start) => (of.clone(), bodies, start),
                 Shown::Own(body) => {

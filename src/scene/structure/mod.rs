@@ -159,54 +159,44 @@ impl<'p> Walk<'_, '_, 'p> {
     fn string(&mut self, schema: &Json, text: &str, span: Range<usize>) -> Json {
         if let Some(choices) = choices(schema) {
             if !choices.contains(&text) {
-                let message =
-                    format!("`{}` is {}; expected {}", self.here(), quoted(text), list(&choices, "or", quoted));
-                self.mistake(
-                    span,
-                    message,
-                    nearest(text, &choices).map(|name| format!("did you mean {}?", quoted(name))),
-                );
+                let expected = list(&choices, "or", quoted);
+                let help = nearest(text, &choices).map(|name| format!("did you mean {}?", quoted(name)));
+                self.mistake(span, format!("`{}` is {}; expected {expected}", self.here(), quoted(text)), help);
             }
-        } else if schema["format"] == "fraction-of-T" {
-            if let Err(expected) = text.parse::<NamedStep>() {
-                let message = format!("`{}` is {}; {expected}, or seconds as a number", self.here(), quoted(text));
-                self.mistake(span, message, None);
-            }
-        } else if schema["format"] == "fraction" {
-            if let Err(expected) = text.parse::<Ratio>() {
-                self.mistake(span, format!("`{}` is {}; {expected}", self.here(), quoted(text)), None);
-            }
-        } else if schema["format"] == "colour" {
-            match TypedColour::read(text) {
-                // A name and its digits are the same colour.
-                Ok(colour) => return Json::String(colour.into()),
+        } else if let Some(found) = schema["format"].as_str().and_then(|format| formatted(format, text)) {
+            match found {
+                Ok(text) => return Json::String(text),
                 Err((wrong, help)) => {
                     self.mistake(span, format!("`{}` is {}{wrong}", self.here(), quoted(text)), help);
                 }
             }
         } else {
-            self.lengths(schema, "characters", "character", text.chars().count(), span.clone());
-            let may_break = schema["format"] == "lines";
-            if let Some(control) = text.chars().find(|&c| c.is_control() && !(may_break && c == '\n')) {
-                let kind = if may_break { "lines" } else { "one line" };
-                let message =
-                    format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
-                self.mistake(span, message, None);
-            }
-            // Drawn texts have a maximum length; names of files have none.
-            if let Some(character) =
-                text.chars().find(|&c| needs_shaping(c)).filter(|_| schema.get("maxLength").is_some())
-            {
-                let message = format!(
-                    "`{}` has {character:?}, which is drawn wrongly; expected characters that are written from left to \
-                     right, unjoined and without combining marks",
-                    self.here()
-                );
-                let help = "use Latin, Greek, Cyrillic, Chinese, Japanese or Korean, with accented letters as single characters";
-                self.report.warn(&self.path, message, help.to_owned());
-            }
+            self.free_text(schema, text, span);
         }
         Json::String(text.into())
+    }
+
+    /// Checks a text that may have any words.
+    fn free_text(&mut self, schema: &Json, text: &str, span: Range<usize>) {
+        self.lengths(schema, "characters", "character", text.chars().count(), span.clone());
+        let may_break = schema["format"] == "lines";
+        if let Some(control) = text.chars().find(|&c| c.is_control() && !(may_break && c == '\n')) {
+            let kind = if may_break { "lines" } else { "one line" };
+            let message = format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
+            self.mistake(span, message, None);
+        }
+        // Drawn texts have a maximum length; names of files have none.
+        let is_drawn = schema.get("maxLength").is_some();
+        if let Some(character) = text.chars().find(|&c| is_drawn && needs_shaping(c)) {
+            let message = format!(
+                "`{}` has {character:?}, which is drawn wrongly; expected characters that are written from left to \
+                 right, unjoined and without combining marks",
+                self.here()
+            );
+            let help =
+                "use Latin, Greek, Cyrillic, Chinese, Japanese or Korean, with accented letters as single characters";
+            self.report.warn(&self.path, message, help.to_owned());
+        }
     }
 
     fn number(&mut self, schema: &Json, value: &Spanned<DeValue<'_>>) -> Json {
@@ -304,6 +294,21 @@ impl<'p> Walk<'_, '_, 'p> {
             self.path.pop();
         }
         Json::Object(json)
+    }
+}
+
+/// A text in the format of a schema, as it is kept, or the rest of a message about it, and the remedy; `None` for other formats.
+fn formatted(format: &str, text: &str) -> Option<Result<String, (String, Option<String>)>> {
+    let same = || text.to_owned();
+    match format {
+        "fraction-of-T" => {
+            let wrong = |expected| (format!("; {expected}, or seconds as a number"), None);
+            Some(text.parse::<NamedStep>().map(|_| same()).map_err(wrong))
+        }
+        "fraction" => Some(text.parse::<Ratio>().map(|_| same()).map_err(|expected| (format!("; {expected}"), None))),
+        // A name and its digits are the same colour.
+        "colour" => Some(TypedColour::read(text).map(String::from)),
+        _ => None,
     }
 }
 
