@@ -34,7 +34,8 @@ use std::slice;
 /// precision.
 pub(super) const LARGEST: f64 = 1e30;
 
-/// A scene: bodies, one world, and several runs. A part with a mistake is `None`.
+// A part with a mistake is `None`.
+/// A scene: bodies, one world, and several runs.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SceneFile {
