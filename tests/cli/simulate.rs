@@ -627,16 +627,13 @@ fn rows_between_frames() {
         times.len() == near.len() && times.iter().zip(near).all(|(time, near)| (time - near).abs() <= 0.5001 * step)
     );
     // Two runs of one body, with a row for each step of 1 ms at most.
-    let long =
-        |every: &str| SMALL.replace("frames_per_second", &format!("every = {every}\nstep = 1e-3\nframes_per_second"));
     let long = |every: &str| {
         let rows = SMALL.replace("step = \"T/50\"", &format!("step = 1e-3\nevery = {every}"));
         rows.replace("duration = 0.1", "duration = 1000")
     };
     for every in ["1e-8", "1.999e-3"] {
         place.write("rows.toml", &long(every));
-        let ran = place.run("check rows.toml");
-        ran.bad(
+        let ran = place.run("check rows.toml").bad(
             2,
             &[
                 "rows.toml:7:9: ",
