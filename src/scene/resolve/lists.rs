@@ -124,10 +124,13 @@ impl Lists {
         let dimension = if nodes.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space };
         let source = ListSource { body, file: None };
         let mut points = |typed: &Option<Vec<Coordinates>>, key| {
-            let typed = typed.as_ref()?;
-            let at = |at: usize| key_path![source.body; key, at];
-            let point = |(row, typed)| vector(typed, dimension, &at(row), report).unwrap_or_default();
-            let points: Vec<_> = typed.iter().enumerate().map(point).collect();
+            let mut path = key_path![source.body; key, 0];
+            let last = path.len() - 1;
+            let point = |(row, typed)| {
+                path[last] = PathPart::Index(row);
+                vector(typed, dimension, &path, report).unwrap_or_default()
+            };
+            let points: Vec<_> = typed.as_ref()?.iter().enumerate().map(point).collect();
             source.check_points(key, &points, report);
             Some(points)
         };
