@@ -36,7 +36,7 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, scene: &Scene, run: usize, threads: usize) -> Self {
-        let count = scene.bodies.iter().map(|named| named.body.elements.len() as u64).sum();
+        let count = scene.bodies.iter().map(|named| named.body.elements().len() as u64).sum();
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
         Self { name, world, count, steps: (WORK / count).max(LEAST), threads, times: Vec::new() }
@@ -86,11 +86,11 @@ fn scene(copies: usize, body: &str, dimension: &str, runs: &[(&str, &str)]) -> S
 
 /// A body of which every fourth element is half filled, with masses in proportion.
 fn filled_in_part(body: &Body) -> Arc<Body> {
-    let fill: Vec<f64> = (0..body.elements.len()).map(|at| if at % 4 == 0 { 0.5 } else { 1.0 }).collect();
-    let mut body = Body { fill: Some(fill), ..body.clone() };
+    let fill: Vec<f64> = (0..body.elements().len()).map(|at| if at % 4 == 0 { 0.5 } else { 1.0 }).collect();
+    let body = body.clone().with_fill(fill).expect("parts of each element");
     let parts = body.fill_of_nodes().expect("it is filled in part");
-    body.mass.iter_mut().zip(parts).for_each(|(mass, part)| *mass *= part);
-    Arc::new(body)
+    let masses = body.mass().iter().zip(parts).map(|(mass, part)| mass * part).collect();
+    Arc::new(body.with_masses(masses).expect("masses above 0"))
 }
 
 /// The present floor of the machine: nanoseconds per box and step.

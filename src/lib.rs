@@ -84,6 +84,7 @@ pub use scene::{
 
 #[cfg(feature = "render")]
 pub mod animation;
+mod carried;
 mod cli;
 mod colour;
 pub mod golden;
@@ -111,7 +112,7 @@ pub mod vector;
 /// The runs of the frame are then simulated over the whole scene. For many frames, a [`Composer`](picture::Composer) with
 /// [`History::for_pictures`](runner::History::for_pictures) does that only once.
 #[cfg(feature = "render")]
-pub fn compose(scene: &Scene, frame: &sim::Frame) -> picture::Picture {
+pub fn compose(scene: &Scene, frame: &runner::Frame) -> picture::Picture {
     let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
     picture::Composer::new(scene, &runner::History::for_pictures(scene, &runs)).compose(frame)
 }

@@ -6,7 +6,7 @@ use localshape::scene::{
     BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene,
     SceneBuilder, Side, Start, StartShape, Swing,
 };
-use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share, mass_spring, shape_based};
+use localshape::sim::model::{ElasticModel, ForceModel, Properties, Report, Scratch, Share, mass_spring, shape_based};
 use localshape::sim::{Body, Diagnostic, Ease, Field, Integrator, Kernel, Nodes, Springs};
 use std::sync::Arc;
 
@@ -350,8 +350,8 @@ struct Idle {
 }
 
 impl ElasticModel for Idle {
-    fn stiffness(&self) -> f64 {
-        self.stiffness
+    fn properties(&self, _: &Body) -> Properties {
+        Properties::new("idle", self.stiffness)
     }
 
     fn springs(&self) -> &[[u32; 2]] {
@@ -383,7 +383,10 @@ fn models_of_the_caller_are_checked_by_their_own_words() {
     let scene =
         |model: Idle| Scene::builder("own", BodyBuilder::polygon(3, 1.0)).run("One", RunBuilder::own(Arc::new(model)));
     let built = scene(idle(100.0)).build(&Limits::default()).unwrap();
-    assert_eq!((built.digest.as_str(), built.runs[0].models[0].stiffness()), ("", 100.0));
+    assert_eq!(
+        (built.digest.as_str(), built.runs[0].models[0].properties(built.runs[0].body()).stiffness),
+        ("", 100.0)
+    );
     let refused = |scene: SceneBuilder, limits: &Limits, expected: &str| {
         let message = scene.build(limits).unwrap_err().to_string();
         assert!(message.starts_with("own: ") && message.contains(expected), "{message}");

@@ -247,21 +247,11 @@ fn graded_cubes_are_coarse_inside() {
         }
         assert!(hanging > 0);
         // The simulation takes their faces as those of cubes.
-        let count = graded.cage.nodes.len();
-        let body = localshape_sim::Body::new(
-            localshape_sim::Dimension::Space,
-            graded.cage.nodes.clone(),
-            vec![1.0; count],
-            elements.clone(),
-            localshape_sim::Solids::Ordered,
-            None,
-        );
-        let topology = localshape_sim::Elements {
-            nodes: &body.elements,
-            kinds: &body.kinds,
-            hulls: &body.hulls,
-            rest: &body.rest,
-        };
+        let body = localshape_sim::Body::builder(graded.cage.nodes.clone())
+            .elements(elements.clone())
+            .build()
+            .expect("a body");
+        let topology = body.topology();
         for element in 0..elements.len() {
             let mut corners = Vec::new();
             topology.for_each_face(element, |face| corners.push(face.len()));
@@ -326,14 +316,15 @@ fn moments_of_inertia_converge() {
 fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
     use localshape_sim::geometry::relative_stiffness;
     use localshape_sim::model::shape_based::ShapeBased;
-    use localshape_sim::{Body, Dimension, Integrator, Solids, State, Stepping, Surroundings, World};
+    use localshape_sim::{Body, Integrator, State, Stepping, Surroundings, World};
     let energy = |with: Fill| {
         let cage = fill(&block(DVec3::ZERO, DVec3::splat(2.0)), with, MOST).unwrap().cage;
         let count = cage.nodes.len();
         let stretch = DMat3::from_cols_array(&[1.02, 0.03, 0.01, 0.03, 0.99, -0.02, 0.01, -0.02, 1.01]);
         let moved = cage.nodes.iter().map(|&node| stretch * node).collect();
-        let mut body = Body::new(Dimension::Space, cage.nodes, vec![1.0; count], cage.elements, Solids::Ordered, None);
-        body.stiffness = Some(relative_stiffness(&body, 0.1));
+        let body = Body::builder(cage.nodes).elements(cage.elements).build().expect("a body");
+        let stiffness = relative_stiffness(&body, 0.1);
+        let body = body.with_stiffness(stiffness).expect("one for each element");
         let model = ShapeBased::new(1.0);
         let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-4);
         let state = State::new(moved, vec![DVec3::ZERO; count]);

@@ -7,7 +7,7 @@ use common::{ball, block, ring, scan, together};
 use glam::{DMat3, DQuat, DVec3};
 use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::{around, bounds, volumes_at_rest};
-use localshape_sim::{Body, Dimension, Solids};
+use localshape_sim::{Body, Solids};
 use std::collections::BTreeMap;
 use std::collections::HashMap;
 
@@ -41,15 +41,21 @@ fn checked(filled: &Filled) -> Body {
     let cage = &filled.cage;
     let solids = if cage.convex { Solids::Convex } else { Solids::Ordered };
     let mass = vec![1.0; cage.nodes.len()];
-    let body = Body::new(Dimension::Space, cage.nodes.clone(), mass, cage.elements.clone(), solids, None);
+    let body = Body::builder(cage.nodes.clone())
+        .elements(cage.elements.clone())
+        .solids(solids)
+        .masses(mass)
+        .build()
+        .expect("a body");
     // Elements fill the space between their outer faces once: none is turned inside out, and inner faces match.
     let volumes = volumes_at_rest(&body);
     assert!(volumes.iter().all(|&volume| volume > 0.0));
-    let outer =
-        || body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none()).map(|(face, _)| face);
+    let outer = || {
+        body.faces().nodes.iter().zip(&body.faces().outer).filter(|(_, outer)| outer.is_none()).map(|(face, _)| face)
+    };
     let triangles: Vec<_> =
         outer().flat_map(|face| (2..face.len()).map(|at| [face[0], face[at - 1], face[at]])).collect();
-    let [inside, sum] = [volume(&body.rest, &triangles), volumes.iter().sum()];
+    let [inside, sum] = [volume(body.rest(), &triangles), volumes.iter().sum()];
     assert!((inside / sum - 1.0).abs() < 1e-10, "{inside} {sum}");
     let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
     for [a, b] in outer().flat_map(around) {
@@ -76,8 +82,8 @@ fn checked(filled: &Filled) -> Body {
 /// The least and the greatest dihedral angle of tetrahedra (degrees).
 fn angles(body: &Body) -> [f64; 2] {
     let mut extremes = [180.0f64, 0.0];
-    for element in body.elements.iter() {
-        let corners: Vec<_> = element.iter().map(|&node| body.rest[node as usize]).collect();
+    for element in body.elements().iter() {
+        let corners: Vec<_> = element.iter().map(|&node| body.rest()[node as usize]).collect();
         for [a, b, c, d] in [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]] {
             let along = (corners[b] - corners[a]).normalize();
             let [one, other] = [c, d].map(|at| (corners[at] - corners[a]).reject_from_normalized(along));
@@ -91,10 +97,11 @@ fn angles(body: &Body) -> [f64; 2] {
 /// How much more stiffness for its mass (1/s²) an element has than a whole one: the ratio of the squares of their radii.
 fn stiffest(body: &Body, whole: f64) -> f64 {
     let spread = |element: &[u32]| {
-        let mean = element.iter().map(|&node| body.rest[node as usize]).sum::<DVec3>() / element.len() as f64;
-        element.iter().map(|&node| body.rest[node as usize].distance_squared(mean)).sum::<f64>() / element.len() as f64
+        let mean = element.iter().map(|&node| body.rest()[node as usize]).sum::<DVec3>() / element.len() as f64;
+        element.iter().map(|&node| body.rest()[node as usize].distance_squared(mean)).sum::<f64>()
+            / element.len() as f64
     };
-    whole / body.elements.iter().map(spread).fold(f64::MAX, f64::min)
+    whole / body.elements().iter().map(spread).fold(f64::MAX, f64::min)
 }
 
 /// The square of the distance of the nodes of a tetrahedron of the lattice from their mean, for sides of 1.
@@ -149,13 +156,13 @@ fn outer_nodes_of_tetrahedra_are_on_the_surface() {
     let mut surface = block(-0.5 * size, 0.5 * size);
     surface.points.iter_mut().for_each(|point| *point = tilt * *point);
     let (filled, body) = filled(&surface, Fill::Tetrahedra { side: 0.05 });
-    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; body.elements.len()]);
+    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; body.elements().len()]);
     let mut compared = 0;
-    for face in (0..body.faces.nodes.len()).filter(|&face| body.faces.outer[face].is_none()) {
+    for face in (0..body.faces().nodes.len()).filter(|&face| body.faces().outer[face].is_none()) {
         // Elements filled in part are wider than the body.
-        if parts[body.faces.inner[face].unwrap() as usize] == 1.0 {
-            for &node in &body.faces.nodes[face] {
-                let within = (tilt.inverse() * body.rest[node as usize]).abs() - 0.5 * size;
+        if parts[body.faces().inner[face].unwrap() as usize] == 1.0 {
+            for &node in &body.faces().nodes[face] {
+                let within = (tilt.inverse() * body.rest()[node as usize]).abs() - 0.5 * size;
                 assert!(within.max_element().abs() < 1e-12);
                 compared += 1;
             }
@@ -172,7 +179,7 @@ fn scans() -> impl Iterator<Item = (&'static str, Surface)> {
 
 /// Checks that filled parts add up to the volume of the surface, about.
 fn assert_filled(filled: &Filled, body: &Body, slack: f64) {
-    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; body.elements.len()]);
+    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; body.elements().len()]);
     assert!(parts.iter().all(|&part| part > 0.0 && part <= 1.0));
     let sum: f64 = volumes_at_rest(body).iter().zip(&parts).map(|(volume, part)| volume * part).sum();
     let ratio = sum / filled.surface.measures().volume;
@@ -272,10 +279,10 @@ fn polyhedra_fill_blocks_exactly() {
 
 /// The volume of each part of a cage that hangs together.
 fn volumes_of_parts(body: &Body) -> Vec<f64> {
-    let mut part: Vec<usize> = (0..body.rest.len()).collect();
-    for _ in 0..body.rest.len() {
+    let mut part: Vec<usize> = (0..body.rest().len()).collect();
+    for _ in 0..body.rest().len() {
         let before = part.clone();
-        for element in body.elements.iter() {
+        for element in body.elements().iter() {
             let least = element.iter().map(|&node| part[node as usize]).min().unwrap();
             element.iter().for_each(|&node| part[node as usize] = least);
         }
@@ -284,7 +291,7 @@ fn volumes_of_parts(body: &Body) -> Vec<f64> {
         }
     }
     let mut sums = BTreeMap::new();
-    for (element, volume) in body.elements.iter().zip(volumes_at_rest(body)) {
+    for (element, volume) in body.elements().iter().zip(volumes_at_rest(body)) {
         *sums.entry(part[element[0] as usize]).or_insert(0.0) += volume;
     }
     sums.into_values().collect()
@@ -309,7 +316,7 @@ fn parts_that_do_not_touch_stay_apart() {
                 // What the nodes of each part weigh is exact, with any elements.
                 let volumes = filled.cage.volumes.expect("those of two parts");
                 let (middle, mut exact) = (0.6 + 0.5 * gap, [0.0; 2]);
-                for (node, volume) in body.rest.iter().zip(volumes) {
+                for (node, volume) in body.rest().iter().zip(volumes) {
                     exact[usize::from(node.x > middle)] += volume;
                 }
                 for (volume, right) in exact.into_iter().zip([0.168, 0.18]) {

@@ -7,7 +7,7 @@ mod common;
 use common::near::outside;
 use localshape_mesh::{Cage, Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::bounds;
-use localshape_sim::{Body, Dimension, Solids};
+use localshape_sim::{Body, Solids};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -52,7 +52,7 @@ fn meshes(folder: &Path) -> Vec<(PathBuf, Format)> {
 fn assert_at_surface(filled: &Filled, side: f64, name: &str) {
     let Cage { nodes, elements, convex, .. } = filled.cage.clone();
     let (solids, mass) = (if convex { Solids::Convex } else { Solids::Ordered }, vec![1.0; nodes.len()]);
-    let body = Body::new(Dimension::Space, nodes, mass, elements, solids, None);
+    let body = Body::builder(nodes).elements(elements).solids(solids).masses(mass).build().expect("a body");
     let found = outside(filled, &body, side);
     assert_eq!((found.far, found.empty), (0, 0), "{name}, {solids:?}: {found:?}");
 }

@@ -10,8 +10,7 @@ use localshape_sim::model::ModelParameters;
 use localshape_sim::model::shape_based::{Parameters, ShapeBased};
 use localshape_sim::stability::Stability;
 use localshape_sim::{
-    Body, Carried, Dimension, Grip, Integrator, Motion, Obstacle, Shape, Solids, State, Status, Stepping, Surroundings,
-    World,
+    Body, Carried, Grip, Integrator, Motion, Obstacle, Shape, Solids, State, Status, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -29,14 +28,17 @@ fn filled(surface: &Surface, with: Fill) -> Arc<Body> {
         fill(surface, with, 100_000).expect("it has an inside");
     let count = nodes.len();
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
-    let body = Body::new(Dimension::Space, nodes, vec![0.0; count], elements, solids, None);
     let Surface { points: rest, triangles, .. } = surface;
-    let mut body = Body { fill: filled, carried: Some(Arc::new(Carried { rest, triangles, weights })), ..body };
+    let carried = Arc::new(Carried { rest, triangles, weights });
+    let body = Body::builder(nodes).elements(elements).solids(solids).fill(filled).carried(carried).build();
+    let body = body.expect("a cage has sound elements");
+    let mut masses = vec![0.0; count];
     for (element, volume) in volumes_at_rest(&body).into_iter().enumerate() {
-        let part = body.fill.as_ref().map_or(1.0, |fill| fill[element]);
-        let nodes = &body.elements[element];
-        nodes.iter().for_each(|&node| body.mass[node as usize] += DENSITY * part * volume / nodes.len() as f64);
+        let part = body.fill().map_or(1.0, |fill| fill[element]);
+        let nodes = &body.elements()[element];
+        nodes.iter().for_each(|&node| masses[node as usize] += DENSITY * part * volume / nodes.len() as f64);
     }
+    let body = body.with_masses(masses).expect("masses above 0");
     Arc::new(body)
 }
 
@@ -47,7 +49,7 @@ fn cube(side: f64) -> Arc<Body> {
 
 /// The volume in the carried surface (m³), with the nodes at positions (m).
 fn volume(body: &Body, nodes: &[DVec3]) -> f64 {
-    let carried = body.carried.as_ref().expect("a surface");
+    let carried = body.carried().expect("a surface");
     let points = carried.positions(nodes);
     let of = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|point| points[point as usize] - points[0]);
@@ -61,17 +63,17 @@ fn sinking(bar: &Surface, with: Fill) -> f64 {
     let (young, gravity) = (1e5, 0.05);
     let body = filled(bar, with);
     let model = ModelParameters::ShapeBased(Parameters::of_material(young)).resolve(&body, None).expect("a material");
-    let top = body.rest.iter().fold(f64::NEG_INFINITY, |top: f64, rest| top.max(rest.y));
-    let nodes = (0u32..).zip(&body.rest).filter(|(_, rest)| rest.y > top - 1e-9).map(|(node, _)| node).collect();
+    let top = body.rest().iter().fold(f64::NEG_INFINITY, |top: f64, rest| top.max(rest.y));
+    let nodes = (0u32..).zip(body.rest()).filter(|(_, rest)| rest.y > top - 1e-9).map(|(node, _)| node).collect();
     let grips = vec![Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still }];
     let around = Surroundings { gravity: -DVec3::Y * gravity, grips, ..Surroundings::default() };
-    let start = State::at_rest(body.rest.clone());
+    let start = State::at_rest(body.rest().to_vec());
     // Steps that are long beside the period, 0.4 s, damp it.
     let mut world = World::new(&body, start, &*model, around, Stepping::new(Integrator::BackwardEuler, 0.5));
     world.advance(12);
-    let sunk = body.rest.iter().zip(&world.state().position).zip(&body.mass);
+    let sunk = body.rest().iter().zip(&world.state().position).zip(body.mass());
     let sunk: f64 = sunk.map(|((rest, now), mass)| mass * (rest.y - now.y)).sum();
-    sunk / body.mass.iter().sum::<f64>() / (DENSITY * gravity / (3.0 * young))
+    sunk / body.mass().iter().sum::<f64>() / (DENSITY * gravity / (3.0 * young))
 }
 
 #[test]
@@ -97,10 +99,10 @@ fn a_hanging_bar_sinks_as_far_as_its_material_lets_it() {
 fn bodies_of_cubes_have_the_step_of_one_full_cube() {
     let side = 0.2;
     let one = cube(side);
-    assert_eq!(one.fill, None);
+    assert_eq!(one.fill(), None);
     for (name, surface) in [("ball", ball(DVec3::new(0.03, 0.01, 1.02), 1.0, 40)), ("ring", ring(1.0, 0.35, 40))] {
         let body = body(&surface, side);
-        let fill = body.fill.as_ref().expect("cubes at the surface");
+        let fill = body.fill().expect("cubes at the surface");
         let least = fill.iter().copied().fold(1.0, f64::min);
         assert!(least < 0.01, "{name}: {least}");
         assert!((body.lightest() / one.lightest() - 1.0).abs() < 1e-9, "{name}: {}", body.lightest());
@@ -113,7 +115,7 @@ fn bodies_of_cubes_have_the_step_of_one_full_cube() {
         assert!(limit(&body) > 0.999 * limit(&one), "{name}: {} {}", limit(&body), limit(&one));
         // It falls onto a floor with nearly the largest step.
         let step = 0.9 * limit(&one);
-        let low = body.rest.iter().fold(f64::INFINITY, |low: f64, rest| low.min(rest.z));
+        let low = body.rest().iter().fold(f64::INFINITY, |low: f64, rest| low.min(rest.z));
         let floor = Obstacle {
             shape: Shape::Floor { normal: DVec3::Z, height: low - 0.05 },
             motion: Motion::Still,
@@ -124,11 +126,11 @@ fn bodies_of_cubes_have_the_step_of_one_full_cube() {
         };
         let gravity = DVec3::Z * -9.8;
         let around = Surroundings { gravity, obstacles: vec![floor], ..Surroundings::default() };
-        let start = State::at_rest(body.rest.clone());
+        let start = State::at_rest(body.rest().to_vec());
         let mut world = World::new(&body, start, &model, around, Stepping::new(integrator, step));
         let before = world.diagnostics();
         // Of 1 m of height (J).
-        let weight = 9.8 * body.mass.iter().sum::<f64>();
+        let weight = 9.8 * body.mass().iter().sum::<f64>();
         for _ in 0..20 {
             world.advance((0.1 / step) as u64);
             let now = world.diagnostics();
@@ -136,7 +138,7 @@ fn bodies_of_cubes_have_the_step_of_one_full_cube() {
             // Rebounds at large steps add some.
             assert!(now.energy < before.energy + 0.1 * weight, "{name}: {} {weight}", now.energy - before.energy);
             // What is filled of the cubes has nearly the volume in the surface.
-            let ratio = volume(&body, &world.state().position) / volume(&body, &body.rest);
+            let ratio = volume(&body, &world.state().position) / volume(&body, body.rest());
             assert!((ratio - now.volume_ratio).abs() < 0.02 && ratio > 0.7, "{name}: {ratio} {}", now.volume_ratio);
         }
         let end = world.diagnostics();

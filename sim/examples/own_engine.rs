@@ -1,22 +1,32 @@
-//! A cube in a loop of your own: `cargo run -p localshape-sim --example own_engine`.
+//! A cube that is pushed off a lift, in a loop of your own: `cargo run -p localshape-sim --example own_engine`.
 use glam::DVec3;
 use localshape_sim::model::shape_based::ShapeBased;
-use localshape_sim::{Body, Dimension, Integrator, Solids, State, Stepping, Surroundings, World};
+use localshape_sim::{
+    Body, FrictionOf, Integrator, Motion, Obstacle, Pose, Shape, State, Stepping, Surroundings, World,
+};
 use std::sync::Arc;
 
-fn main() {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The corners of a cube of 1 m, 1 kg each, with x fastest.
     let corner = |at: u32| DVec3::new(f64::from(at & 1), f64::from(at >> 1 & 1), f64::from(at >> 2));
     let rest: Vec<_> = (0..8).map(corner).collect();
-    let cube = [&[0, 1, 2, 3, 4, 5, 6, 7][..]].into_iter().collect();
-    let start = State::at_rest(rest.iter().map(|&node| node * 1.1).collect());
-    let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 8], cube, Solids::Ordered, None));
+    let start = State::at_rest(rest.clone());
+    let body = Arc::new(Body::builder(rest).elements([&[0, 1, 2, 3, 4, 5, 6, 7][..]].into_iter().collect()).build()?);
     // Any type with the traits of `model` will do.
-    let model = ShapeBased::new(1e3);
-    let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-3);
-    let mut world = World::new(&body, start, &model, Surroundings::default(), stepping);
-    for _frame in 0..60 {
+    let model = ShapeBased { damping: 5.0, ..ShapeBased::new(1e4) };
+    let around = Surroundings { gravity: DVec3::Y * -9.8, ..Surroundings::default() };
+    let mut world = World::new(&body, start, &model, around, Stepping::new(Integrator::VelocityVerlet, 1e-3));
+    // A plate that goes up and down, by any function of time.
+    let shape = Shape::Box { centre: DVec3::Y * -0.5, half: DVec3::new(2.0, 0.5, 2.0), rotation: Default::default() };
+    let lift = |time: f64| Pose { shift: DVec3::Y * (0.2 * (2.0 * time).sin()), ..Pose::NONE };
+    let (motion, pivot, friction_of) = (Motion::Along(Arc::new(lift)), DVec3::ZERO, FrictionOf::Path);
+    world.set_obstacles(vec![Obstacle { shape, motion, pivot, restitution: 0.2, friction: 0.3, friction_of }])?;
+    for frame in 0..120 {
+        if frame == 30 {
+            world.push(&[0, 2, 4, 6], DVec3::X * 20.0)?; // A hand at the left side, which stays there.
+        }
         world.advance(16);
         println!("{}", world.state().position[7]); // Draw here.
     }
+    Ok(())
 }

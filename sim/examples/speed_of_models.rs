@@ -4,7 +4,7 @@
 //! its general kernel.
 use glam::DVec3;
 use localshape_sim::model::{ElasticModel, ModelParameters};
-use localshape_sim::{Body, Crew, Dimension, IndexLists, Integrator, Solids, State, Stepping, Surroundings, World};
+use localshape_sim::{Body, Crew, IndexLists, Integrator, State, Stepping, Surroundings, World};
 use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Instant;
@@ -44,13 +44,13 @@ fn block(tetrahedra: bool, irregular: f64) -> Arc<Body> {
         }
     }
     let mass = vec![1e-3; rest.len()];
-    Arc::new(Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None))
+    Arc::new(Body::builder(rest).elements(elements).masses(mass).build().expect("a body"))
 }
 
 fn world(body: &Arc<Body>, model: &dyn ElasticModel) -> World {
     let spin = DVec3::new(1.0, 2.0, -0.5);
-    let velocity = body.rest.iter().map(|&rest| spin.cross(rest) + DVec3::X * (0.2 * rest.y)).collect();
-    let start = State::new(body.rest.clone(), velocity);
+    let velocity = body.rest().iter().map(|&rest| spin.cross(rest) + DVec3::X * (0.2 * rest.y)).collect();
+    let start = State::new(body.rest().to_vec(), velocity);
     let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-4);
     let mut world = World::new(body, start, model, Surroundings::default(), stepping);
     world.set_crew(Crew::new(1));
@@ -90,12 +90,12 @@ fn main() {
             for (_, world, best) in &mut cases {
                 let start = Instant::now();
                 world.advance(STEPS);
-                let each = start.elapsed().as_secs_f64() * 1e9 / (STEPS as f64 * body.elements.len() as f64);
+                let each = start.elapsed().as_secs_f64() * 1e9 / (STEPS as f64 * body.elements().len() as f64);
                 *best = best.min(each);
             }
         }
         let kind = if tetrahedra { "tetrahedra" } else { "hexahedra" };
-        println!("{} {kind}, irregular {irregular}", body.elements.len());
+        println!("{} {kind}, irregular {irregular}", body.elements().len());
         for (name, world, best) in &cases {
             let status = world.status();
             println!("  {best:7.1} ns per element and step, {:5.2}: {status:?} {name}", best / cases[0].2);

@@ -99,7 +99,7 @@ impl From<&Arc<Body>> for Assembly {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Dimension, ElementKind, Solids};
+    use crate::element::{ElementKind, Solids};
     use crate::topology::Springs;
 
     /// A cube, or an octahedron for six corners, at a height (m).
@@ -110,14 +110,9 @@ mod tests {
         let nodes: Vec<u32> = (0..corners as u32).collect();
         let solids = if corners == 8 { Solids::Ordered } else { Solids::Convex };
         let rest = (0..corners).map(corner).collect();
-        Arc::new(Body::new(
-            Dimension::Space,
-            rest,
-            vec![1.0; corners],
-            [&nodes[..]].into_iter().collect(),
-            solids,
-            None,
-        ))
+        Arc::new(
+            Body::builder(rest).elements([&nodes[..]].into_iter().collect()).solids(solids).build().expect("a body"),
+        )
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(crate) struct Broken {
 impl Broken {
     /// `None` for a model whose parts never break.
     pub(crate) fn new(model: &dyn ElasticModel, body: &Arc<Body>) -> Option<Self> {
-        let width = model.breaks(body)?;
+        let width = model.properties(body).breakable?;
         Some(Self { body: Arc::clone(body), width, springs: model.springs().to_vec() })
     }
 
@@ -69,7 +69,7 @@ impl Broken {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Dimension, Solids};
+    use crate::element::Dimension;
     use crate::model::mass_spring::MassSpring;
     use glam::DVec3;
 
@@ -78,7 +78,8 @@ mod tests {
         // Two squares side by side.
         let rest = (0..6).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0)).collect();
         let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
-        let body = Arc::new(Body::new(Dimension::Plane, rest, vec![1.0; 6], elements, Solids::Ordered, None));
+        let body =
+            Arc::new(Body::builder(rest).dimension(Dimension::Plane).elements(elements).build().expect("a body"));
         let springs = [[0, 1], [0, 2], [1, 3], [2, 3], [2, 4], [3, 5], [4, 5]].into();
         let model = MassSpring { stiffness: 1.0, damping: 0.0, springs, breaks_at: Some(0.1) };
         let broken = Broken::new(&model, &body).expect("springs that break");

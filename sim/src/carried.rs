@@ -2,10 +2,8 @@
 
 use super::lists::IndexLists;
 use glam::DVec3;
-use rayon::prelude::*;
 
-/// A closed or open surface of triangles whose points follow the nodes of a body. Pictures and files show it in place of the
-/// body's own faces.
+/// A closed or open surface of triangles whose points follow the nodes of a body, finer than its own faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Carried {
     /// The position of each point with the body at rest (m).
@@ -17,25 +15,12 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// The position of each point (m), from those of the body's nodes. The threads of the caller's pool (rayon) share the points.
+    /// The position of each point (m), from those of the body's nodes.
     ///
     /// # Panics
     /// If a node is missing.
     pub fn positions(&self, nodes: &[DVec3]) -> Vec<DVec3> {
-        let mut positions = Vec::new();
-        self.append_positions(nodes, &mut positions);
-        positions
-    }
-
-    /// Appends the position of each point (m), as [`Self::positions`].
-    ///
-    /// # Panics
-    /// If a node is missing.
-    pub fn append_positions(&self, nodes: &[DVec3], positions: &mut Vec<DVec3>) {
-        /// Points in one task, at least: each takes some 10 ns.
-        const LEAST: usize = 2048;
-        let points = (0..self.weights.len()).into_par_iter().with_min_len(LEAST);
-        positions.par_extend(points.map(|point| self.weights.place(point, nodes)));
+        (0..self.weights.len()).map(|point| self.weights.place(point, nodes)).collect()
     }
 }
 

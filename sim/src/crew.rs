@@ -1,8 +1,9 @@
-//! A pool of threads for vectorised steps. The caller makes a [`Crew`] and passes it to a [`World`](super::World); the
+//! A pool of threads for steps and diagnostics. The caller makes a [`Crew`] and passes it to a [`World`](super::World); the
 //! simulation starts no threads by itself.
 
 #![expect(unsafe_code, reason = "work that borrows is lent to threads that outlive it, and taken back before it ends")]
 
+use std::fmt;
 use std::hint::spin_loop;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -102,6 +103,19 @@ impl Crew {
             *ranges[me].lock().unwrap_or_else(PoisonError::into_inner) = own;
         });
         ranges.into_iter().flat_map(|range| range.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+    }
+}
+
+impl Default for Crew {
+    /// The calling thread alone.
+    fn default() -> Self {
+        Self::new(1)
+    }
+}
+
+impl fmt::Debug for Crew {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Crew").field("threads", &self.threads()).finish()
     }
 }
 

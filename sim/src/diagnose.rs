@@ -87,7 +87,7 @@ impl Diagnose {
 mod tests {
     use super::super::diagnostics::{Diagnostic, Diagnostics, Facts, is_flat, is_turned_over};
     use super::*;
-    use crate::element::{Dimension, Solids};
+    use crate::element::Solids;
     use crate::lists::IndexLists;
     use crate::state::State;
     use glam::DQuat;
@@ -95,8 +95,7 @@ mod tests {
     fn at_rest(rest: Vec<DVec3>) -> Diagnostics {
         let mut elements = IndexLists::default();
         elements.push(&(0..rest.len() as u32).collect::<Vec<_>>());
-        let body =
-            Arc::new(Body::new(Dimension::Space, rest.clone(), vec![1.0; rest.len()], elements, Solids::Ordered, None));
+        let body = Arc::new(Body::builder(rest.clone()).elements(elements).build().expect("a body"));
         diagnostics(&Diagnose::new(&body), &State::at_rest(rest))
     }
 
@@ -137,7 +136,7 @@ mod tests {
         let corner = |bit: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1)));
         let rest: Vec<_> = (0..8).map(corner).collect();
         let elements = [&[0, 1, 2, 3, 4, 5, 6, 7][..]].into_iter().collect();
-        let body = Body::new(Dimension::Space, rest.clone(), vec![1.0; 8], elements, Solids::Ordered, None);
+        let body = Body::builder(rest.clone()).elements(elements).build().expect("a body");
         let diagnose = Diagnose::new(&Arc::new(body));
         let over = |height: f64, turn: u32| {
             let tilt = DQuat::from_xyzw(0.1, -0.2, 0.01 * f64::from(turn), 0.9).normalize();
@@ -171,7 +170,7 @@ mod tests {
             (0..8u32).map(|bit| DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1))) - DVec3::Y * 3.0);
         let rest: Vec<_> = octahedron.into_iter().chain(cube).collect();
         let elements = [&[0, 1, 2, 3, 4, 5][..], &[6, 7, 8, 9, 10, 11, 12, 13]].into_iter().collect();
-        let body = Body::new(Dimension::Space, rest.clone(), vec![1.0; 14], elements, Solids::Convex, None);
+        let body = Body::builder(rest.clone()).elements(elements).solids(Solids::Convex).build().expect("a body");
         let mut now = rest;
         now[..6].iter_mut().for_each(|corner| corner.y *= 0.5);
         let ratio = diagnostics(&Diagnose::new(&Arc::new(body)), &State::at_rest(now)).volume_ratio;

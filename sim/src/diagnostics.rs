@@ -6,9 +6,6 @@ use super::model::Report;
 use super::placement::Placement;
 use super::state::Nodes;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::ser::SerializeMap;
-use serde::{Deserialize, Serialize, Serializer};
 use std::cell::LazyCell;
 use std::fmt;
 
@@ -215,7 +212,8 @@ macro_rules! diagnostics {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
         /// body does not have is NaN: the elastic energy, `residual`, `global_rotations` and `broken` of some models, the volume ratio of a cloth.
         /// Two that are both NaN are equal.
-        #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+        #[derive(Clone, Copy, Debug, Default)]
+        #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
         pub struct Diagnostics {
             $($(#[doc = $meaning])+ pub $key: $type,)+
         }
@@ -238,8 +236,9 @@ macro_rules! diagnostics {
         }
 
         /// A number that describes a state, to be shown over time.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-        #[serde(rename_all = "snake_case")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+        #[cfg_attr(feature = "scene", serde(rename_all = "snake_case"))]
         pub enum Diagnostic {
             $($(#[doc = $meaning])+ $variant,)+
         }
@@ -379,8 +378,10 @@ impl fmt::Debug for Chosen {
     }
 }
 
-impl Serialize for Chosen {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+#[cfg(feature = "scene")]
+impl serde::Serialize for Chosen {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeMap;
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
         for (diagnostic, value) in self.iter() {
             match value {
@@ -393,7 +394,7 @@ impl Serialize for Chosen {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "scene"))]
 mod tests {
     use super::*;
 

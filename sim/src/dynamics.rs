@@ -1,30 +1,22 @@
 //! The interface of the codes that advance a state: the reference code with its integrators, the vectorised kernels, and
 //! recordings.
 
-use super::body::Body;
-
 use super::crew::Crew;
 use super::hull::bounds;
 use super::integrate::Unsolved;
 use super::model::{Report, Share};
 use super::part::Part;
 use super::state::{Divergence, Nodes, Runaway, State};
-use super::system::{Surroundings, System};
+use super::surroundings::Surroundings;
+use super::system::System;
 
 /// Advances a state. It may keep the nodes in its own arrays between calls.
 pub(super) trait Dynamics: Send + Sync {
-    /// Takes `count` steps from the present state, and counts them. It may use the threads of the crew.
+    /// Takes `count` steps from the present state, and counts them.
     ///
     /// # Errors
     /// When a node would become faster than the limit: the state is then the one before that step.
-    fn advance(
-        &mut self,
-        system: &System,
-        limit: &SpeedLimit,
-        state: &mut State,
-        count: u64,
-        crew: &mut Crew,
-    ) -> Result<(), Runaway>;
+    fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway>;
 
     /// Writes the state back, if it is kept elsewhere.
     fn settle(&mut self, _state: &mut State) {}
@@ -53,6 +45,9 @@ pub(super) trait Dynamics: Send + Sync {
         state.steps
     }
 
+    /// A copy for another world in the same state.
+    fn copy(&self) -> Box<dyn Dynamics>;
+
     /// Called after the state was replaced by another one: forgets everything derived from the old one.
     fn restart(&mut self) {}
 }
@@ -66,23 +61,29 @@ pub(super) trait Dynamics: Send + Sync {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SpeedLimit {
     own: f64,
-    gravity: f64,
+    /// What gravity and forces from outside add in each second (m/s²).
+    growth: f64,
+    /// The time of the state from which it was computed (s).
+    since: f64,
 }
 
 impl SpeedLimit {
     /// For a node of one element. The frequency of a node grows with the square root of the number of its elements.
     const EXTENTS_PER_CYCLE: f64 = 50.0;
     const MARGIN: f64 = 10.0;
+    /// The greatest limit (m/s): its square is finite. It holds where loads and paths of the caller may make nodes faster than is known.
+    const MOST: f64 = 1e150;
 
-    /// The limit for one part from its initial state, with the shortest period (s) of its model.
-    pub(super) fn new(body: &Body, initial: Nodes<'_>, period: f64, surroundings: &Surroundings, step: f64) -> Self {
-        let (low, high) = bounds(initial.position);
+    /// The limit for one part from its state at a time (s), with the shortest period (s) of its model.
+    pub(super) fn new(part: &Part, at: Nodes<'_>, surroundings: &Surroundings, step: f64, since: f64) -> Self {
+        let (body, nodes) = (&part.body, part.nodes_of(at));
+        let (low, high) = bounds(nodes.position);
         let extent = body.extent().max((high - low).max_element());
-        let start = initial.velocity.iter().fold(0.0, |fastest: f64, v| fastest.max(v.length()));
+        let start = nodes.velocity.iter().fold(0.0, |fastest: f64, v| fastest.max(v.length()));
         let mut elements_of_node = vec![0u32; body.len()];
         body.elements.indices().iter().for_each(|&node| elements_of_node[node as usize] += 1);
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
-        let Surroundings { gravity, obstacles, grips } = surroundings;
+        let Surroundings { gravity, obstacles, grips, forces, loads } = surroundings;
         let pushing = obstacles.iter().map(|obstacle| {
             // A half-space is infinite: only its rotation near the body counts.
             let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);
@@ -99,17 +100,22 @@ impl SpeedLimit {
         let (farthest, fastest) =
             moving.fold((0.0, start), |(far, fast), (way, speed)| (way.max(far), speed.max(fast)));
         let extent = extent + farthest;
-        let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / period + Self::MARGIN * fastest;
-        Self { own, gravity: Self::MARGIN * gravity.length() }
+        let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / part.period + Self::MARGIN * fastest;
+        let own = if loads.is_empty() { own } else { Self::MOST };
+        let of_nodes = forces.iter().skip(part.nodes.start).zip(&body.mass);
+        let pushed = of_nodes.map(|(force, mass)| force.length() / mass);
+        let growth = Self::MARGIN * (gravity.length() + pushed.fold(0.0, f64::max));
+        Self { own, growth, since }
     }
 
-    /// The larger of two limits, for all parts together.
+    /// The larger of two limits from the same time, for all parts together.
     pub(super) fn max(self, other: Self) -> Self {
-        Self { own: self.own.max(other.own), gravity: self.gravity.max(other.gravity) }
+        Self { own: self.own.max(other.own), growth: self.growth.max(other.growth), since: self.since }
     }
 
     /// The limit (m/s) at a time (s).
     pub(super) fn at(&self, time: f64) -> f64 {
-        self.own + self.gravity * time
+        let limit = self.own + self.growth * (time - self.since);
+        if limit > Self::MOST { Self::MOST } else { limit }
     }
 }

@@ -6,12 +6,11 @@ use super::kernel;
 use super::lanes::Set;
 use super::placement::Placement;
 use super::state::Nodes;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// A number for each node or each element of a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum Field {
     /// Relative deformation of each element: `√(Σ |r − M R0|² / Σ |R0|²)` with the best rotation `M`. Zero for any
     /// rigid motion, and `a` for an element scaled by `1 + a`.
@@ -104,23 +103,21 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Dimension, Solids};
+    use crate::element::Dimension;
     use crate::state::State;
     use glam::{DQuat, DVec3};
 
     #[test]
     fn strain_is_the_scale_of_a_scaled_element_and_nothing_for_a_turned_one() {
-        let rest = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::new(0.4, 0.5, 1.0)];
         let turn = DQuat::from_xyzw(0.3, -0.4, 0.1, 0.8).normalize();
-        for dimension in [Dimension::Plane, Dimension::Space] {
-            let body = Body::new(
-                dimension,
-                rest.clone(),
-                vec![1.0; 5],
-                [&[0, 1, 2, 3][..]].into_iter().collect(),
-                Solids::Ordered,
-                None,
-            );
+        for (dimension, height) in [(Dimension::Plane, 0.0), (Dimension::Space, 1.0)] {
+            let top = DVec3::new(0.4, 0.5, height);
+            let rest = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, top];
+            let body = Body::builder(rest.clone())
+                .dimension(dimension)
+                .elements([&[0, 1, 2, 3][..]].into_iter().collect())
+                .build()
+                .expect("a body");
             let turn = if dimension == Dimension::Plane { DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8) } else { turn };
             for scale in [1.0, 1.25, 0.4] {
                 let now = State::at_rest(rest.iter().map(|&point| DVec3::ONE + scale * (turn * point)).collect());

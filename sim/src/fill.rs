@@ -61,7 +61,7 @@ fn mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Dimension, Solids};
+    use crate::element::Dimension;
     use glam::DVec3;
 
     #[test]
@@ -69,7 +69,7 @@ mod tests {
         // Two squares side by side, and a node of no element.
         let rest: Vec<_> = (0..7).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0)).collect();
         let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
-        let full = Body::new(Dimension::Plane, rest, vec![1.0; 7], elements, Solids::Ordered, None);
+        let full = Body::builder(rest).dimension(Dimension::Plane).elements(elements).build().expect("a body");
         let springs: [&[u32]; 5] = [&[0, 1], &[2, 3], &[5, 4], &[0, 4], &[4, 6]];
         assert_eq!((parts(&full, springs.into_iter()), full.fill_of_nodes()), (None, None));
         let body = Body { fill: Some(vec![1.0, 0.25]), ..full };

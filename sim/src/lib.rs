@@ -1,13 +1,20 @@
 //! Deformable bodies that keep their local shapes (Miyazaki et al.), beside mass-spring models, for your own engine.
 //!
 //! A [`Body`] has nodes, masses and elements at rest. A [`World`] moves it by a model of [`model`] and a method of
-//! [`integrate`], among [`Obstacle`]s and [`Grip`]s. Read positions from [`World::state`], or a [`Snapshot`] with diagnostics.
+//! [`integrate`], among [`Obstacle`]s, [`Grip`]s and forces, which may change between steps. Read positions from [`World::state`], or a
+//! [`Snapshot`] with diagnostics.
 //! Numbers are in SI units and double precision, with the same bits on every machine and for any number of threads. A world that
 //! diverges stops and reports it as its [`Status`]. The crate uses no files, no clock and no device.
 //!
 //! ```
 #![doc = include_str!("../examples/own_engine.rs")]
 //! ```
+//!
+//! # Features
+//!
+//! `scene`: models as scene files have them, with their schema, and states and results that serde writes and reads.
+//!
+//! # Debug builds
 //!
 //! Optimise this crate in debug builds, too: `[profile.dev.package.localshape-sim]` with `opt-level = 1`. Otherwise steps are slow, and
 //! with AVX-512 one frame of a kernel fills most of the stack of a thread.
@@ -51,6 +58,7 @@ pub mod rotation;
 mod snapshot;
 pub mod stability;
 mod state;
+mod surroundings;
 mod system;
 mod tally;
 mod topology;
@@ -58,7 +66,7 @@ mod volume;
 mod world;
 
 pub use assembly::Assembly;
-pub use body::Body;
+pub use body::{Body, BodyError, NewBody};
 pub use carried::{Carried, Weights};
 pub use contact::{Contact, FrictionOf, Obstacle, Placed, Shape};
 pub use crew::Crew;
@@ -67,17 +75,15 @@ pub use element::{Dimension, ElementKind, Solids};
 pub use field::{Field, Support};
 pub use grip::Grip;
 pub use integrate::{Integrator, Unsolved};
-/// Measurements of the processor for benchmarks.
-#[doc(hidden)]
 pub use kernel::peak;
 pub use lanes::vectors;
 pub use lists::IndexLists;
 pub use material::Material;
-pub use motion::{Ease, Key, Motion, Offset, Pose};
+pub use motion::{Ease, Key, Motion, Offset, Path, Pose};
 pub use placement::Placement;
 pub use recording::Recording;
-pub use snapshot::{Frame, LastFit, RunFrame, Snapshot};
+pub use snapshot::Snapshot;
 pub use state::{Divergence, Memory, Nodes, State, Status};
-pub use system::Surroundings;
+pub use surroundings::{Load, Surroundings, WrongSurroundings};
 pub use topology::{Elements, Faces, Springs};
 pub use world::{Kernel, Moment, Stepping, World};

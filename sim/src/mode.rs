@@ -2,7 +2,6 @@
 
 /// Stiffness and damping of a mode, divided by its mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[doc(hidden)]
 pub struct Mode {
     /// `a` (1/s²), the square of the angular frequency without damping.
     pub stiffness: f64,

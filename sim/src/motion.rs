@@ -2,6 +2,8 @@
 
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::sync::Arc;
 
 /// A rigid displacement: a rotation about a pivot, then a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +59,13 @@ pub struct Interval {
     pub step: f64,
 }
 
+impl Interval {
+    /// The time (s) after a share of it.
+    pub fn after(&self, share: f64) -> f64 {
+        if share == 1.0 { self.end } else { self.begin + share * self.step }
+    }
+}
+
 /// A displacement at a time: a key of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
@@ -67,8 +76,9 @@ pub struct Key {
 }
 
 /// The interpolation of a path between keys.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum Ease {
     /// Starts and ends at rest: after the fraction `s` of the time the path has covered the fraction `(1 − cos πs)/2`.
     #[default]
@@ -120,6 +130,32 @@ pub enum Motion {
         /// The greatest displacement.
         amplitude: Offset,
     },
+    /// A path of the caller's own. Two are equal if they are the same object.
+    Along(Arc<dyn Path>),
+}
+
+/// A path of the caller's own, such as that of a hand or a machine in an engine. Closures from times to poses are paths, too.
+pub trait Path: Send + Sync {
+    /// The displacement at a time (s). The same time has the same one.
+    fn pose(&self, time: f64) -> Pose;
+}
+
+impl<F: Fn(f64) -> Pose + Send + Sync> Path for F {
+    fn pose(&self, time: f64) -> Pose {
+        self(time)
+    }
+}
+
+impl fmt::Debug for dyn Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Path")
+    }
+}
+
+impl PartialEq for dyn Path {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::addr_eq(self, other)
+    }
 }
 
 impl Motion {
@@ -139,6 +175,7 @@ impl Motion {
                 let share = libm::sin(TAU * (swings - swings.floor()) + phase);
                 Offset::default().lerp(*amplitude, share).pose()
             }
+            Self::Along(path) => path.pose(time),
         }
     }
 
@@ -151,10 +188,11 @@ impl Motion {
             Self::Still => 0.0,
             Self::Keys { keys, .. } => 2.0 * keys.iter().map(|key| way(key.offset)).fold(0.0, f64::max),
             Self::Swing { amplitude, .. } => 2.0 * way(*amplitude),
+            Self::Along(_) => f64::INFINITY,
         }
     }
 
-    /// The greatest speed (m/s) at a distance from the pivot (m).
+    /// The greatest speed (m/s) at a distance from the pivot (m); infinite for a path of the caller's own.
     pub fn greatest_speed(&self, distance: f64) -> f64 {
         let way = |offset: Offset| offset.shift.length() + offset.rotation.length() * distance;
         match self {
@@ -169,6 +207,7 @@ impl Motion {
                 keys.windows(2).map(speed).fold(0.0, f64::max)
             }
             Self::Swing { period, amplitude, .. } => TAU / period * way(*amplitude),
+            Self::Along(_) => f64::INFINITY,
         }
     }
 }

@@ -204,7 +204,7 @@ fn pierces([from, to]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::Solids;
+
     use std::sync::Arc;
 
     /// A body of one row of boxes along x with a corner at the origin.
@@ -221,7 +221,9 @@ mod tests {
 
     fn made<'a>(dimension: Dimension, rest: Vec<DVec3>, elements: impl Iterator<Item = &'a [u32]>) -> Arc<Body> {
         let mass = vec![1.0; rest.len()];
-        Arc::new(Body::new(dimension, rest, mass, elements.collect(), Solids::Ordered, None))
+        Arc::new(
+            Body::builder(rest).dimension(dimension).elements(elements.collect()).masses(mass).build().expect("a body"),
+        )
     }
 
     /// Whether two bodies overlap when the second is moved (m), in either order.

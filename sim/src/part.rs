@@ -11,26 +11,29 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
+#[derive(Clone)]
 pub(crate) struct Part {
     /// Its number, counted from 0.
     pub number: usize,
     /// The body.
     pub body: Arc<Body>,
     /// The forces of its model.
-    pub forces: Box<dyn ForceModel>,
+    pub forces: Arc<dyn ForceModel>,
     /// What moves its nodes in place of the forces, if its model does so.
-    pub(super) projection: Option<Box<dyn Projection>>,
+    pub(super) projection: Option<Arc<dyn Projection>>,
     /// The range of its nodes.
     pub nodes: Range<usize>,
     /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).
     pub memory: Range<usize>,
     /// Whether the last number of that memory is [`Diagnostics::global_rotations`].
-    pub(super) counts_global: bool,
+    pub(super) counts_fallbacks: bool,
     /// How its elements or springs break, if they do.
-    pub(super) breaks: Option<Broken>,
+    pub(super) breaks: Option<Arc<Broken>>,
+    /// The shortest period of its model (s).
+    pub(super) period: f64,
     /// The number of its springs.
     pub(super) springs: usize,
-    pub(super) diagnose: Diagnose,
+    pub(super) diagnose: Arc<Diagnose>,
 }
 
 impl Part {
@@ -41,7 +44,8 @@ impl Part {
 
     /// [`Diagnostics::broken`] by the memory of all models.
     pub(super) fn count_broken(&self, memory: &[f64]) -> f64 {
-        let count = |breaks: &Broken| breaks.of(&memory[self.memory.clone()]).filter(|&broken| broken).count() as f64;
+        let count =
+            |breaks: &Arc<Broken>| breaks.of(&memory[self.memory.clone()]).filter(|&broken| broken).count() as f64;
         self.breaks.as_ref().map_or(f64::NAN, count)
     }
 
@@ -57,6 +61,6 @@ impl Part {
 
     /// [`Diagnostics::global_rotations`] by the memory of all models.
     pub(super) fn global_rotations(&self, memory: &[f64]) -> f64 {
-        memory[self.memory.clone()].last().copied().filter(|_| self.counts_global).unwrap_or(f64::NAN)
+        memory[self.memory.clone()].last().copied().filter(|_| self.counts_fallbacks).unwrap_or(f64::NAN)
     }
 }

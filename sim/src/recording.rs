@@ -3,12 +3,12 @@
 use super::body::Body;
 use super::crew::Crew;
 use super::dynamics::{Dynamics, SpeedLimit};
-use super::model::{ElasticModel, ForceModel, Report, Scratch, Share};
+use super::model::{ElasticModel, ForceModel, Properties, Report, Scratch, Share};
 use super::part::Part;
 use super::state::{Divergence, Nodes, Runaway, State, Status};
 use super::system::System;
 use glam::DVec3;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The states of a run that was computed elsewhere. A [`World`](super::World) that plays it shows its states after each
 /// number of steps, and computes none. It is that of an earlier simulation or of another program.
@@ -23,7 +23,8 @@ pub trait Recording: Send + Sync {
 
 /// Takes states from a recording.
 pub(super) struct ByRecording {
-    recording: Box<dyn Recording>,
+    /// Copies of a world take turns at it.
+    recording: Arc<Mutex<Box<dyn Recording>>>,
     /// The code that would compute the states, and reports on them.
     reporting: Box<dyn Dynamics>,
     /// The number of steps after which the state is the present one.
@@ -32,21 +33,20 @@ pub(super) struct ByRecording {
 
 impl ByRecording {
     pub(super) fn new(recording: Box<dyn Recording>, reporting: Box<dyn Dynamics>) -> Self {
-        Self { recording, reporting, shown: None }
+        Self { recording: Arc::new(Mutex::new(recording)), reporting, shown: None }
+    }
+}
+
+impl ByRecording {
+    fn recording(&self) -> MutexGuard<'_, Box<dyn Recording>> {
+        self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Dynamics for ByRecording {
-    fn advance(
-        &mut self,
-        _: &System,
-        _: &SpeedLimit,
-        state: &mut State,
-        count: u64,
-        _: &mut Crew,
-    ) -> Result<(), Runaway> {
+    fn advance(&mut self, _: &System, _: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway> {
         let steps = state.steps.saturating_add(count);
-        let end = self.recording.end();
+        let end = self.recording().end();
         if end.step <= steps {
             state.steps = end.step - 1;
             return Err(Runaway { node: 0 });
@@ -58,7 +58,7 @@ impl Dynamics for ByRecording {
     // States between moments are never looked at, and not read.
     fn settle(&mut self, state: &mut State) {
         if state.status == Status::Ok && self.shown != Some(state.steps) {
-            self.recording.show(state.steps, state);
+            self.recording().show(state.steps, state);
             self.shown = Some(state.steps);
         }
     }
@@ -68,7 +68,7 @@ impl Dynamics for ByRecording {
     }
 
     fn divergence(&self, system: &System, _: &State, _: Runaway) -> Divergence {
-        let end = self.recording.end();
+        let end = self.recording().end();
         // A recording may be of other parts.
         let elements = system.parts.get(end.part).map_or(0, |part| part.body.elements.len());
         match end.element {
@@ -76,6 +76,11 @@ impl Dynamics for ByRecording {
             None if end.part >= system.parts.len() => Divergence { part: 0, ..end },
             _ => end,
         }
+    }
+
+    fn copy(&self) -> Box<dyn Dynamics> {
+        let (recording, reporting) = (Arc::clone(&self.recording), self.reporting.copy());
+        Box::new(Self { recording, reporting, shown: None })
     }
 
     fn restart(&mut self) {
@@ -88,8 +93,8 @@ impl Dynamics for ByRecording {
 pub(super) struct Unknown;
 
 impl ElasticModel for Unknown {
-    fn stiffness(&self) -> f64 {
-        0.0
+    fn properties(&self, _: &Body) -> Properties {
+        Properties::new("", 0.0)
     }
 
     fn prepare(&self, _: &Arc<Body>) -> Box<dyn ForceModel> {

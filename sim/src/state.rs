@@ -1,13 +1,13 @@
 //! The [`State`]: everything that changes in a simulation.
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
 /// Everything that persists from one step to the next. A run continued from a copy of its state, or from a state that
 /// was written and read back, has the same bits as one that never stopped.
 ///
 /// An initial state has only positions and velocities; a [`World`](super::World) adds the rest.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Position of each node (m), part after part.
     pub position: Vec<DVec3>,
@@ -22,7 +22,8 @@ pub struct State {
 }
 
 /// Where and when a run diverged. This is a result, not an error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub struct Divergence {
     /// Time of the end of the first step that was rejected (s).
     pub time: f64,
@@ -45,6 +46,7 @@ pub struct Runaway {
 
 /// Whether a run has diverged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// It has not.
     #[default]
@@ -56,6 +58,7 @@ pub enum Status {
 /// What persists from one step to the next besides positions and velocities. The model, the constraint or the
 /// integrator that writes its part defines what the numbers mean.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub struct Memory {
     /// Of the elastic models, part after part, such as the last rotation of each element.
     pub model: Vec<f64>,

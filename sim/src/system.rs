@@ -1,39 +1,29 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
-use super::contact::{ContactStage, Obstacle};
+use super::contact::ContactStage;
+use super::crew::Crew;
+use super::dynamics::SpeedLimit;
 use super::grip::Grip;
 use super::model::Scratch;
 use super::motion::Interval;
 use super::part::Part;
 use super::state::{Divergence, Memory, Nodes, Runaway, State};
+use super::surroundings::Surroundings;
 use glam::DVec3;
-
-/// Gravity, obstacles and kinematic constraints around bodies.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surroundings {
-    /// Acceleration of gravity (m/s²).
-    pub gravity: DVec3,
-    /// Obstacles, in the order in which they act.
-    pub obstacles: Vec<Obstacle>,
-    /// Kinematic constraints, applied after all obstacles.
-    pub grips: Vec<Grip>,
-}
+use std::sync::Arc;
 
 /// All parts and their surroundings.
+#[derive(Clone)]
 pub(super) struct System {
     pub(super) parts: Vec<Part>,
     /// Mass of each node (kg).
     pub(super) mass: Vec<f64>,
-    /// Acceleration of gravity (m/s²).
-    pub(super) gravity: DVec3,
-    /// Obstacles, in the order in which they act.
-    pub(super) obstacles: Vec<Obstacle>,
-    /// Kinematic constraints, applied after obstacles.
-    pub(super) grips: Vec<Grip>,
+    pub(super) surroundings: Surroundings,
     /// Contact that needs several nodes at once, applied after grips.
-    pub(super) contact: Vec<Box<dyn ContactStage>>,
+    pub(super) contact: Vec<Arc<dyn ContactStage>>,
     /// Time step ΔT (s).
     pub(super) step: f64,
+    pub(super) crew: Arc<Crew>,
 }
 
 impl System {
@@ -50,6 +40,13 @@ impl System {
         (part, body.elements.iter().position(|nodes| nodes.contains(&own)))
     }
 
+    /// The greatest speed of nodes from a state on.
+    pub(super) fn speed_limit(&self, state: &State) -> SpeedLimit {
+        let since = self.interval(state.steps).begin;
+        let of = |part: &Part| SpeedLimit::new(part, state.nodes(), &self.surroundings, self.step, since);
+        self.parts.iter().map(of).reduce(SpeedLimit::max).unwrap_or_default()
+    }
+
     /// Where and when a run diverges whose next step is not taken.
     pub(super) fn divergence(&self, state: &State, runaway: Runaway) -> Divergence {
         let (time, step) = (self.interval(state.steps).end, state.steps + 1);
@@ -62,19 +59,22 @@ impl System {
         self.parts.iter().any(|part| part.forces.is_damped())
     }
 
-    /// Gravity, then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and the models' `next`
-    /// memory. Models that project positions exert none.
+    /// Gravity and forces from outside at a time (s), then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and
+    /// the models' `next` memory. Models that project positions exert none.
     pub(super) fn forces(
         &self,
+        time: f64,
         at: Nodes<'_>,
         memory: &[f64],
         next: &mut [f64],
         scratch: &mut Scratch,
         forces: &mut [DVec3],
     ) {
+        scratch.share(&self.crew);
         for (force, &mass) in forces.iter_mut().zip(&self.mass) {
-            *force = self.gravity * mass;
+            *force = self.surroundings.gravity * mass;
         }
+        self.surroundings.push(time, at.position, forces);
         for part in self.parts.iter().filter(|part| part.projection.is_none()) {
             let (memory, next) = (&memory[part.memory.clone()], &mut next[part.memory.clone()]);
             part.forces.add_forces(part.nodes_of(at), memory, next, scratch, &mut forces[part.nodes.clone()]);
@@ -116,13 +116,13 @@ impl System {
     /// Whether a grip holds nodes at the end of the step after `steps` steps.
     pub(super) fn holds(&self, steps: u64) -> bool {
         let end = self.interval(steps).end;
-        self.grips.iter().any(|grip| grip.moves(end))
+        self.surroundings.grips.iter().any(|grip| grip.moves(end))
     }
 
     /// Each grip with its part of the memory.
     pub(super) fn grips<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = (&'a Grip, &'a [f64])> {
         let mut rest = memory;
-        self.grips.iter().map(move |grip| {
+        self.surroundings.grips.iter().map(move |grip| {
             let (own, others) = rest.split_at(grip.width());
             rest = others;
             (grip, own)
@@ -132,7 +132,7 @@ impl System {
     /// Calls `change` with each grip and its part of the memory.
     pub(super) fn change_grips(&self, memory: &mut [f64], mut change: impl FnMut(&Grip, &mut [f64])) {
         let mut rest = memory;
-        for grip in &self.grips {
+        for grip in &self.surroundings.grips {
             let (own, others) = rest.split_at_mut(grip.width());
             change(grip, own);
             rest = others;
@@ -149,7 +149,7 @@ impl System {
         acceleration: Option<&[DVec3]>,
     ) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
-        for obstacle in &self.obstacles {
+        for obstacle in &self.surroundings.obstacles {
             obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
         }
         for (grip, memory) in self.grips(constraints) {

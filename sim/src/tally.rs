@@ -10,6 +10,12 @@ pub(crate) struct Tally {
     kept: u64,
 }
 
+impl Clone for Tally {
+    fn clone(&self) -> Self {
+        Self { now: self.get().into(), kept: self.kept }
+    }
+}
+
 impl Tally {
     /// Adds the lanes whose bits are set.
     pub(crate) fn add(&self, lanes: u32) {

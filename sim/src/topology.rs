@@ -219,26 +219,40 @@ pub(crate) fn assign_faces(
 }
 
 /// Which springs a named topology puts on an element (paper, sections 2 and 3; Fig. 4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
 pub enum Springs {
     /// One spring on each edge.
-    #[serde(rename = "edges")]
+    #[cfg_attr(feature = "scene", serde(rename = "edges"))]
     Edges,
     /// Edges and one diagonal of each face, as drawn in Fig. 4(b). On a hexahedron the diagonals are the six edges of
     /// the tetrahedron on corners 0, 3, 5, 6, so that faces between elements have both. On another quadrilateral the
     /// diagonal starts at the corner with the least coordinates at rest (x, then y, then z). A face of more corners has
     /// all diagonals from that corner.
-    #[serde(rename = "edges+one-diagonal")]
+    #[cfg_attr(feature = "scene", serde(rename = "edges+one-diagonal"))]
     EdgesOneDiagonal,
     /// Edges and both diagonals of each face.
-    #[serde(rename = "edges+face-diagonals")]
+    #[cfg_attr(feature = "scene", serde(rename = "edges+face-diagonals"))]
     EdgesFaceDiagonals,
     /// Edges and the diagonals through the element: pairs of nodes that share no face.
-    #[serde(rename = "edges+body-diagonals")]
+    #[cfg_attr(feature = "scene", serde(rename = "edges+body-diagonals"))]
     EdgesBodyDiagonals,
     /// Every pair of nodes of an element.
-    #[serde(rename = "all")]
+    #[cfg_attr(feature = "scene", serde(rename = "all"))]
     All,
+}
+
+impl Springs {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Edges => "edges",
+            Self::EdgesOneDiagonal => "edges+one-diagonal",
+            Self::EdgesFaceDiagonals => "edges+face-diagonals",
+            Self::EdgesBodyDiagonals => "edges+body-diagonals",
+            Self::All => "all",
+        }
+    }
 }
 
 #[cfg(test)]

@@ -239,7 +239,7 @@ pub(super) fn mean(points: &[DVec3]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Dimension, Solids};
+
     use crate::lists::IndexLists;
 
     /// Elements of every kind, one by one and in runs longer and shorter than the lanes of any vector set.
@@ -253,7 +253,7 @@ mod tests {
             elements.push(&(0..count).map(|corner| first + 3 * corner).collect::<Vec<u32>>());
         }
         let rest: Vec<_> = (0..100).map(node).collect();
-        let body = Body::new(Dimension::Space, rest, vec![1.0; 100], elements, Solids::Ordered, None);
+        let body = Body::builder(rest).elements(elements).build().expect("a body");
         let alone = |element: usize| match body.kinds[element] {
             ElementKind::Segment | ElementKind::Triangle | ElementKind::Other => 0.0,
             kind => volume_by_faces(kind, &body.elements[element], &body.rest),

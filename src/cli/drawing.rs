@@ -14,8 +14,9 @@ use crate::output::{
 use crate::picture::{Composer, Picture};
 use crate::render::{Pending, RenderError, Renderer};
 use crate::runner::history::History;
+use crate::runner::{Frame, RunFrame};
 use crate::scene::Scene;
-use crate::sim::{Diagnostic, Frame, RunFrame, Snapshot};
+use crate::sim::{Diagnostic, Snapshot};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

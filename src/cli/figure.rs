@@ -11,11 +11,12 @@ use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_fol
 use crate::picture::compose_figure;
 use crate::reading::setting::Setting;
 use crate::reading::words::nearest;
+use crate::runner::RunFrame;
 use crate::runner::moments::{Forces, Moments, Taking};
 use crate::scene::figure::built_in::NAMES;
 use crate::scene::figure::{Content, Figure};
 use crate::scene::{Limits, Scene, SceneError};
-use crate::sim::{self, Chosen, Diagnostics, RunFrame, Scope, Snapshot};
+use crate::sim::{self, Chosen, Diagnostics, Scope, Snapshot};
 use clap::{Args, ValueHint};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
@@ -316,7 +317,8 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
             let of_scene = |(scene, found): (&Scene, &Vec<Forces>)| {
                 let runs = scene.runs.iter().zip(found).map(|(run, found)| {
                     let of_body = |body: usize| {
-                        let unit = run.models[body].stiffness() * scene.view.side;
+                        let stiffness = run.models[body].properties(&run.bodies.bodies()[body]).stiffness;
+                        let unit = stiffness * scene.view.side;
                         found.on_nodes[run.bodies.nodes(body)].iter().map(move |force| (*force / unit).to_array())
                     };
                     let forces: Vec<_> = (0..run.of.len()).flat_map(of_body).collect();

@@ -11,11 +11,12 @@ use crate::output::{
     Spent, StatesWriter, Summary, Timings, thread_time, waiting_states,
 };
 use crate::reading::setting::Setting;
+use crate::runner::Frame;
 use crate::runner::cause::Cause;
 use crate::runner::growing::Growing;
 use crate::runner::{Frames, Next, Progress, Runner, Stored};
 use crate::scene::{Run, Scene};
-use crate::sim::{self, Diagnostic, Frame, State};
+use crate::sim::{self, Diagnostic, State};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::error::Error;
@@ -430,7 +431,7 @@ struct Simulation<'a> {
 /// element, and ten times that with the reference code. A frame seldom takes more.
 pub(super) fn slice<'a>(runs: impl IntoIterator<Item = &'a Run>) -> u64 {
     const CORNERS: usize = 2_500_000;
-    let corners = runs.into_iter().map(|run| run.body().elements.indices().len()).max();
+    let corners = runs.into_iter().map(|run| run.body().elements().indices().len()).max();
     (CORNERS / corners.unwrap_or(0).max(1)).max(1) as u64
 }
 

@@ -4,8 +4,8 @@ use super::failure::{Failure, note, with_causes};
 use crate::output::export::Export;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
-use crate::runner::{Frames, Row};
-use crate::sim::{Diagnostic, Frame};
+use crate::runner::{Frame, Frames, Row};
+use crate::sim::Diagnostic;
 use std::time::{Duration, Instant};
 
 /// Makes pictures of frames, for one scene.

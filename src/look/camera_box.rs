@@ -38,7 +38,7 @@ impl CameraBox {
             let seen = DVec3::from_array(axes.map(|axis| (at - centre).dot(axis)));
             (low, high) = (low.min(seen), high.max(seen));
         };
-        match &body.carried {
+        match &body.carried() {
             Some(surface) if view.visible.surfaces && !view.visible.cage => {
                 let points = (0..surface.rest.len()).step_by(surface.rest.len().div_ceil(MANY_POINTS).max(1));
                 points.for_each(|point| add(surface.weights.place(point, position)));

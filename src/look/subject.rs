@@ -46,7 +46,7 @@ pub(crate) struct SubjectRun<'a> {
 
 impl<'a> Subject<'a> {
     pub(super) fn dimension(&self) -> Dimension {
-        self.bodies[0].body.dimension
+        self.bodies[0].body.dimension()
     }
 
     /// The mean of the bodies' sides (m).
@@ -99,7 +99,7 @@ impl<'a> Subject<'a> {
             Field::Distance => LARGE * self.extent(),
             Field::ElasticEnergy => {
                 let energy = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {
-                    0.5 * model.stiffness() * (LARGE * of.side) * (LARGE * of.side)
+                    0.5 * model.properties(of.body).stiffness * (LARGE * of.side) * (LARGE * of.side)
                 };
                 most(&mut self.parts().map(energy))
             }
@@ -113,7 +113,7 @@ impl<'a> Subject<'a> {
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
                 // Bodies that nothing else moves oscillate at their own frequencies.
                 let swing = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {
-                    LARGE * of.side * TAU / model.shortest_period(of.body)
+                    LARGE * of.side * TAU / model.properties(of.body).shortest_period(of.body)
                 };
                 if fastest > 0.0 { fastest } else { most(&mut self.parts().map(swing)) }
             }

@@ -372,8 +372,8 @@ impl Traced {
     pub(crate) fn of(self, body: &Body, position: &[DVec3]) -> DVec3 {
         match self {
             Self::Centre => {
-                let weighed = position.iter().zip(&body.mass).map(|(&at, &mass)| mass * at);
-                weighed.sum::<DVec3>() / body.mass.iter().sum::<f64>()
+                let weighed = position.iter().zip(body.mass()).map(|(&at, &mass)| mass * at);
+                weighed.sum::<DVec3>() / body.mass().iter().sum::<f64>()
             }
             Self::Node(node) => position[node as usize],
         }

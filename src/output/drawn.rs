@@ -5,7 +5,7 @@ use super::png::{file, header, pixel_dims, texts_of};
 use super::{
     Compression, DiagnosticsWriter, FrameFolder, OutputError, Tags, encode_print, frame_file_name, write_whole,
 };
-use crate::sim::Frame;
+use crate::runner::Frame;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Folders with frames and diagnostics, written by other programs.
 
 use super::{DiagnosticsWriter, OutputError};
+use crate::runner::Frame;
 use crate::scene::Scene;
-use crate::sim::Frame;
 use std::fs;
 use std::io;
 use std::path::Path;

@@ -1,10 +1,11 @@
 //! Pictures as PNG files, with metadata in text chunks.
 
 use super::{OutputError, exact, recorded, state_digest};
+use crate::runner::Frame;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
-use crate::sim::{Frame, Snapshot};
+use crate::sim::Snapshot;
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;

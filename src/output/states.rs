@@ -1,11 +1,12 @@
 //! `states.npz`: bodies, and their positions and velocities in every frame, for analysis in other programs.
 
 use super::{AtomicFile, OutputError};
+use crate::runner::Frame;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::history::{History, Row};
 use crate::scene::npy::begin;
 use crate::scene::{COURSE, Course, Origin, Run, Scene, SceneBody, StoredRun};
-use crate::sim::{Assembly, Frame, State, Status};
+use crate::sim::{Assembly, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -298,11 +299,11 @@ fn fill_mesh(archive: &mut ZipWriter<BufWriter<&mut File>>, mesh: &Mesh, several
     let (body, nodes) = (&**bodies.whole(), bodies.whole().len());
     let name = |array: &str| format!("{prefix}{array}");
     begin(archive, &name("rest"), "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;
-    body.rest.iter().try_for_each(|rest| archive.write_all(&vector_bytes(rest)))?;
+    body.rest().iter().try_for_each(|rest| archive.write_all(&vector_bytes(rest)))?;
     begin(archive, &name("mass"), "<f8", &format!("({nodes},)"), 8 * nodes as u64)?;
-    body.mass.iter().try_for_each(|mass| archive.write_all(&mass.to_le_bytes()))?;
-    fill_lists(archive, &name("elements"), 2, body.elements.iter())?;
-    let faces = &body.faces;
+    body.mass().iter().try_for_each(|mass| archive.write_all(&mass.to_le_bytes()))?;
+    fill_lists(archive, &name("elements"), 2, body.elements().iter())?;
+    let faces = body.faces();
     let bounds = |&face: &usize| faces.inner[face].is_none() || faces.outer[face].is_none();
     fill_lists(archive, &name("faces"), 3, (0..faces.nodes.len()).filter(bounds).map(|face| &faces.nodes[face]))?;
     if several {

@@ -2,9 +2,9 @@
 
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
-use crate::runner::{Row, TimeSeries};
+use crate::runner::{Frame, Row, TimeSeries};
 use crate::scene::Scene;
-use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Frame, Scope, Snapshot, Status, Unsolved};
+use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 

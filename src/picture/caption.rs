@@ -9,10 +9,11 @@ use super::wrap::{balanced, cut, wrapped};
 use super::{Item, Panel, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
-use crate::reading::captions::{constants, parts_and_constants, stiffness_of_material};
-use crate::scene::{Run, Scene};
+use crate::reading::captions::{constants, parts_and_constants, stiffness_of_material, unusual_choices};
+use crate::runner::RunFrame;
+use crate::scene::{Run, Scene, brakes_rotation};
 use crate::sim::model::ElasticModel;
-use crate::sim::{Body, Divergence, RunFrame, Snapshot, Status};
+use crate::sim::{Body, Divergence, Snapshot, Status};
 
 /// The name of counts.
 const TURNED_OVER: &str = "turned over";
@@ -37,12 +38,14 @@ pub(super) fn short_description(scene: &Scene, run: &Run) -> String {
         return recording.description();
     }
     let short = |words: fn(&dyn ElasticModel, &Body) -> String| -> Vec<_> {
-        let rotation = |model: &dyn ElasticModel| match model.brakes_rotation() && scene.braked(run).is_some() {
-            true => ", also of rotation",
-            false => "",
+        let rotation = |model: &dyn ElasticModel, body: &Body| {
+            if brakes_rotation(model, body) && scene.braked(run).is_some() { ", also of rotation" } else { "" }
         };
         let all = |(model, body): (&dyn ElasticModel, _)| {
-            words(model, body) + rotation(model) + &model.unusual_choices(body) + &stiffness_of_material(model)
+            words(model, body)
+                + rotation(model, body)
+                + &unusual_choices(model, body)
+                + &stiffness_of_material(model, body)
         };
         run.models_and_bodies().map(all).collect()
     };

@@ -9,6 +9,7 @@ use super::shadow::{Shape, edges};
 use super::shell::Side;
 use super::surface::{Border, HATCH_PERIOD, SurfaceLines, Surroundings, newell};
 use super::{LineKind, Mesh, Vertex};
+use crate::carried::append_positions;
 use crate::look::BODIES;
 use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Body, Carried};
@@ -72,7 +73,7 @@ impl Fine {
     /// The carried surfaces of bodies.
     pub(super) fn of(bodies: &Assembly) -> Vec<Self> {
         let carried = bodies.bodies().iter().enumerate();
-        carried.filter_map(|(at, body)| Some(Self::new(body.carried.as_ref()?, bodies, at))).collect()
+        carried.filter_map(|(at, body)| Some(Self::new(body.carried()?, bodies, at))).collect()
     }
 
     fn new(surface: &Arc<Carried>, bodies: &Assembly, body: usize) -> Self {
@@ -145,13 +146,13 @@ impl Fine {
 
     /// Appends the positions of its points (m), from those of the nodes of all bodies.
     pub(super) fn place(&self, position: &[DVec3], points: &mut Vec<DVec3>) {
-        self.surface.append_positions(&position[self.nodes.clone()], points);
+        append_positions(&self.surface, &position[self.nodes.clone()], points);
     }
 
     /// Marks the elements inside it, among those of all bodies: full ones that move no triangle.
     pub(super) fn mark_inside(&self, bodies: &Assembly, elements: &mut [bool]) {
         let own = &mut elements[self.elements.clone()];
-        let fill = bodies.bodies()[self.body].fill.as_deref();
+        let fill = bodies.bodies()[self.body].fill();
         own.iter_mut().enumerate().for_each(|(at, inside)| *inside = fill.is_none_or(|fill| fill[at] >= 1.0));
         self.movers.iter().filter(|&&mover| mover != NONE).for_each(|&mover| own[mover as usize] = false);
     }
@@ -186,7 +187,7 @@ impl Fine {
         };
         let body = &bodies.bodies()[self.body];
         let mut around = vec![Vec::new(); body.len()];
-        for (element, nodes) in body.elements.iter().enumerate() {
+        for (element, nodes) in body.elements().iter().enumerate() {
             nodes.iter().for_each(|&node| around[node as usize].push(element));
         }
         let is_gone = |point: usize| {
@@ -194,7 +195,7 @@ impl Fine {
             let followed: Vec<_> =
                 nodes.iter().zip(weights).filter(|&(_, &weight)| weight != 0.0).map(|(node, _)| node).collect();
             let Some(&&first) = followed.first() else { return false };
-            let carries = |element: usize| followed.iter().all(|node| body.elements[element].contains(node));
+            let carries = |element: usize| followed.iter().all(|node| body.elements()[element].contains(node));
             let mut carriers = around[first as usize].iter().filter(|&&element| carries(element)).peekable();
             carriers.peek().is_some() && carriers.all(|&element| broken[element])
         };
@@ -239,14 +240,14 @@ impl Fine {
 /// passes from one element to another, that of a point.
 fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
     let of_element = |(nodes, element): (&'_ [u32], u32)| nodes.iter().map(|&node| (node, element)).collect::<Vec<_>>();
-    let mut around: Vec<(u32, u32)> = body.elements.iter().zip(0..).flat_map(of_element).collect();
+    let mut around: Vec<(u32, u32)> = body.elements().iter().zip(0..).flat_map(of_element).collect();
     around.sort_unstable();
     let nodes = |point: u32| surface.weights.of(point as usize).0;
     let mover = |points: &[u32]| {
         let first = *nodes(points[0]).first()?;
         let around = &around[around.partition_point(|&(node, _)| node < first)..];
         let mut around = around.iter().take_while(|(node, _)| *node == first).map(|&(_, element)| element);
-        let holds = |element: u32, node| body.elements[element as usize].contains(node);
+        let holds = |element: u32, node| body.elements()[element as usize].contains(node);
         around.find(|&element| points.iter().all(|&point| nodes(point).iter().all(|node| holds(element, node))))
     };
     let of_triangle = |triangle: &[u32; 3]| mover(triangle).or_else(|| mover(&triangle[..1])).unwrap_or(NONE);

@@ -15,10 +15,10 @@ pub(super) struct Ears(HashMap<Vec<u32>, Vec<[u32; 3]>>);
 impl Ears {
     /// Searches all faces that have a single side, or more than four corners.
     pub(super) fn new(body: &Body) -> Self {
-        let sides = body.faces.nodes.iter().zip(&body.faces.outer);
+        let sides = body.faces().nodes.iter().zip(&body.faces().outer);
         let single = sides.filter(|(nodes, outer)| outer.is_none() && (4..=MOST_CORNERS).contains(&nodes.len()));
         let found = single.filter_map(|(nodes, _)| {
-            let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
+            let corners: Vec<_> = nodes.iter().map(|&node| body.rest()[node as usize]).collect();
             Some((nodes.to_vec(), ears(&flattened(&corners)?)?))
         });
         Self(found.collect())
@@ -84,17 +84,17 @@ fn side_of(corners: &[DVec2], [from, to]: [usize; 2], point: usize) -> f64 {
 
 /// Elements without a face, unless the body lists its drawn faces.
 pub(super) fn bare_elements(body: &Body) -> Vec<usize> {
-    let mut has_face = vec![false; body.elements.len()];
-    let owners = body.faces.inner.iter().chain(&body.faces.outer).flatten();
+    let mut has_face = vec![false; body.elements().len()];
+    let owners = body.faces().inner.iter().chain(&body.faces().outer).flatten();
     owners.for_each(|&element| has_face[element as usize] = true);
     // Listed faces are drawn instead of the elements' own, so elements inside may stay hidden.
-    let own = (0..body.elements.len()).all(|element| {
+    let own = (0..body.elements().len()).all(|element| {
         let mut expected = false;
         body.topology().for_each_face(element, |_| expected = true);
         expected == has_face[element]
     });
-    if own || body.faces.nodes.is_empty() {
-        return (0..body.elements.len()).filter(|&element| !has_face[element]).collect();
+    if own || body.faces().nodes.is_empty() {
+        return (0..body.elements().len()).filter(|&element| !has_face[element]).collect();
     }
     Vec::new()
 }

@@ -21,7 +21,7 @@ impl Shades {
         let support = scale.field.support();
         let expected = match support {
             Support::Nodes => body.len(),
-            Support::Elements => body.elements.len(),
+            Support::Elements => body.elements().len(),
         };
         let places = match values.len() == expected {
             true => values.iter().map(|&value| place(value, scale.range)).collect(),
@@ -56,7 +56,7 @@ impl Shades {
             return self.places.clone();
         }
         let mut sums = vec![(0.0, 0.0); body.len()];
-        for (nodes, &place) in body.elements.iter().zip(&self.places).filter(|(_, place)| **place != NOWHERE) {
+        for (nodes, &place) in body.elements().iter().zip(&self.places).filter(|(_, place)| **place != NOWHERE) {
             for &node in nodes {
                 let (sum, count) = &mut sums[node as usize];
                 (*sum, *count) = (*sum + place, *count + 1.0);
@@ -87,13 +87,13 @@ pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
 mod tests {
     use super::*;
     use crate::look::ColourMap;
-    use crate::sim::{Dimension, Field, IndexLists, Solids};
+    use crate::sim::{Dimension, Field, IndexLists};
     use glam::DVec3;
 
     fn body() -> Body {
-        let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE].to_vec();
+        let rest = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y].to_vec();
         let elements: IndexLists = [&[0, 1, 2][..], &[1, 3, 2]].into_iter().collect();
-        Body::new(Dimension::Plane, rest, vec![1.0; 4], elements, Solids::Ordered, None)
+        Body::builder(rest).dimension(Dimension::Plane).elements(elements).build().expect("a body")
     }
 
     #[test]

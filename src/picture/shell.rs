@@ -21,7 +21,7 @@ pub(super) fn boundaries(body: &Body, turned_over: &[bool], broken: &[bool]) -> 
     let whole = |side: Option<u32>| side.filter(|&element| !is_broken(broken, element));
     let set = |element: u32| usize::from(turned_over.get(element as usize).copied().unwrap_or(false));
     let mut sets = [Vec::new(), Vec::new()];
-    for (face, (&inner, &outer)) in (0..).zip(body.faces.inner.iter().zip(&body.faces.outer)) {
+    for (face, (&inner, &outer)) in (0..).zip(body.faces().inner.iter().zip(&body.faces().outer)) {
         if inner.is_none() && outer.is_none() {
             sets[0].push(Side { face, reversed: false, element: None });
             continue;
@@ -39,7 +39,7 @@ pub(super) fn boundaries(body: &Body, turned_over: &[bool], broken: &[bool]) -> 
 /// The triangles of faces, as nodes.
 pub(super) fn triangles(body: &Body, sides: &[Side]) -> Vec<[u32; 3]> {
     let of_side = |side: &Side| {
-        let (nodes, reversed) = (&body.faces.nodes[side.face as usize], side.reversed);
+        let (nodes, reversed) = (&body.faces().nodes[side.face as usize], side.reversed);
         (2..nodes.len()).map(move |at| {
             let [a, b, c] = [nodes[0], nodes[at - 1], nodes[at]];
             if reversed { [a, c, b] } else { [a, b, c] }
@@ -56,7 +56,6 @@ pub(super) fn is_broken(broken: &[bool], element: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Dimension, Solids};
     use glam::DVec3;
 
     #[test]
@@ -66,7 +65,7 @@ mod tests {
         let cube = |at: u32| [0, 4, 2, 6, 1, 5, 3, 7].map(|corner| 4 * at + corner);
         let (rest, cubes) = ((0..16).map(corner).collect(), [0, 1, 2].map(cube));
         let elements = cubes.iter().map(|cube| &cube[..]).collect();
-        let body = Body::new(Dimension::Space, rest, vec![1.0; 16], elements, Solids::Ordered, None);
+        let body = Body::builder(rest).elements(elements).build().expect("a body");
         let count = |turned_over: &[bool], broken: &[bool]| boundaries(&body, turned_over, broken).map(|set| set.len());
         assert_eq!(count(&[], &[]), [14, 0]);
         assert_eq!(count(&[], &[false, true, false]), [12, 0]);

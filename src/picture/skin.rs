@@ -43,7 +43,7 @@ impl Skin {
             *place
         };
         let outside =
-            body.faces.nodes.iter().zip(&body.faces.outer).enumerate().filter(|(_, (_, outer))| outer.is_none());
+            body.faces().nodes.iter().zip(&body.faces().outer).enumerate().filter(|(_, (_, outer))| outer.is_none());
         let mut triangles = Vec::new();
         for (_, (face, _)) in outside.filter(|&(at, _)| !fine.iter().any(|fine| fine.faces.contains(&at))) {
             match ears.of(face) {
@@ -79,7 +79,7 @@ impl Skin {
 
     /// Whether each element of bodies is inside a carried surface; empty without one.
     pub(super) fn inside(&self, bodies: &Assembly) -> Vec<bool> {
-        let mut inside = vec![false; if self.fine.is_empty() { 0 } else { bodies.whole().elements.len() }];
+        let mut inside = vec![false; if self.fine.is_empty() { 0 } else { bodies.whole().elements().len() }];
         self.fine.iter().for_each(|fine| fine.mark_inside(bodies, &mut inside));
         inside
     }

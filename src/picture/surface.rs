@@ -223,7 +223,7 @@ impl Surroundings<'_> {
     /// The corners of a face as seen from outside of the set that it bounds.
     pub(super) fn corners(&self, side: &Side, nodes: &mut Vec<u32>) {
         nodes.clear();
-        nodes.extend_from_slice(&self.body().faces.nodes[side.face as usize]);
+        nodes.extend_from_slice(&self.body().faces().nodes[side.face as usize]);
         if side.reversed {
             nodes.reverse();
         }
@@ -309,7 +309,7 @@ impl Surroundings<'_> {
 
     /// Whether faces draw the edges of their elements.
     fn is_fine(&self) -> bool {
-        self.ears.is_empty() && self.element < FINE && self.body().elements.len() >= MANY_ELEMENTS
+        self.ears.is_empty() && self.element < FINE && self.body().elements().len() >= MANY_ELEMENTS
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
@@ -377,7 +377,7 @@ impl Surroundings<'_> {
         phases.clear();
         let body = self.bodies.body_of_node(nodes[0] as usize);
         let soft = self.soft[body];
-        let phase = |node: u32| self.body().rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * soft);
+        let phase = |node: u32| self.body().rest()[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * soft);
         phases.extend(nodes.iter().map(|&node| dots.unwrap_or_else(|| phase(node))));
         points.clear();
         triangles.clear();

@@ -43,8 +43,8 @@ impl Block {
         let (whole, range) = (bodies.whole(), bodies.elements(body));
         let count = range.len();
         let height = |element: usize| {
-            let nodes = &whole.elements[element];
-            nodes.iter().map(|&node| whole.rest[node as usize]).sum::<DVec3>().y / nodes.len() as f64
+            let nodes = &whole.elements()[element];
+            nodes.iter().map(|&node| whole.rest()[node as usize]).sum::<DVec3>().y / nodes.len() as f64
         };
         let mut elements: Vec<usize> = range.clone().collect();
         elements.sort_by(|&a, &b| height(b).total_cmp(&height(a)).then(a.cmp(&b)));
@@ -75,9 +75,9 @@ impl Block {
 impl Tally {
     /// The tally of some bodies, with cells of a side (m).
     pub(super) fn new(bodies: &Assembly, side: f64) -> Self {
-        let count = bodies.whole().elements.len();
+        let count = bodies.whole().elements().len();
         let blocks = (0..bodies.bodies().len()).map(|body| Block::new(bodies, body, side)).collect();
-        let tally = Self { blocks, count, dimension: bodies.whole().dimension };
+        let tally = Self { blocks, count, dimension: bodies.whole().dimension() };
         if count > MOST_SQUARES { tally.as_bar() } else { tally }
     }
 

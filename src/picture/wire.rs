@@ -47,7 +47,7 @@ pub(super) struct Edges {
 impl Edges {
     /// The edges of all elements of a body.
     pub(super) fn new(body: &Body) -> Self {
-        let of_elements: Vec<_> = (0..body.elements.len()).map(|element| body.topology().edges_of(element)).collect();
+        let of_elements: Vec<_> = (0..body.elements().len()).map(|element| body.topology().edges_of(element)).collect();
         let all = each_once(of_elements.iter());
         Self { all, of_elements }
     }
@@ -220,7 +220,7 @@ impl Wire<'_> {
 
     /// Lines from the middle of an element without edges to its nodes.
     fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
-        let nodes = &self.body.elements[element];
+        let nodes = &self.body.elements()[element];
         let middle = nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
         for &node in nodes {
             let ends = [middle, self.position[node as usize]];
@@ -311,6 +311,6 @@ fn strained_share(strain: f64, [low, high]: [f64; 2]) -> f64 {
 /// The change of the distance of two nodes over their distance at rest; NaN if that is zero.
 pub(super) fn spring_strain(body: &Body, position: &[DVec3], ends: [u32; 2]) -> f64 {
     let length = |points: &[DVec3]| points[ends[0] as usize].distance(points[ends[1] as usize]);
-    let rest = length(&body.rest);
+    let rest = length(body.rest());
     if rest > 0.0 { length(position) / rest - 1.0 } else { f64::NAN }
 }

@@ -1,25 +1,90 @@
 //! Models, elements, choices and quantities in words, for captions and messages.
 
-use crate::sim::model::ElasticModel;
+use crate::sim::model::{ElasticModel, Parameter, Properties, Setting};
 use crate::sim::{Body, Dimension, ElementKind, Material};
 use glam::DVec3;
 use serde::Serialize;
 
 /// A model with all choices that change the result, such as the rotation solver, and the material that it is.
 pub fn description(model: &dyn ElasticModel, body: &Body) -> String {
-    let is_material = model.material(body).filter(|_| model.typed_material().is_none());
+    let is_material = model.material(body).filter(|_| model.properties(body).given_material().is_none());
     let as_material = is_material.map_or_else(String::new, |is| format!(", as a material {}", material(is, body)));
-    parts_and_constants(model, body) + &model.choices(body) + &stiffness_of_material(model) + &as_material
+    parts_and_constants(model, body) + &choices(model, body) + &stiffness_of_material(model, body) + &as_material
 }
 
 /// The elastic constant of a model whose material was given: `, k = 10 kN/m`.
-pub(crate) fn stiffness_of_material(model: &dyn ElasticModel) -> String {
-    model.typed_material().map_or_else(String::new, |_| format!(", k = {}", quantity(model.stiffness(), "N/m")))
+pub(crate) fn stiffness_of_material(model: &dyn ElasticModel, body: &Body) -> String {
+    let properties = model.properties(body);
+    let stiffness = || format!(", k = {}", quantity(properties.stiffness, "N/m"));
+    properties.given_material().map_or_else(String::new, |_| stiffness())
+}
+
+/// All choices of a model that change the result, such as `, rotation robust (exact)`.
+fn choices(model: &dyn ElasticModel, body: &Body) -> String {
+    let properties = model.properties(body);
+    let rotation = match (properties.get("rotation"), properties.get("passes")) {
+        (Some(Setting::Choice("planar")), _) => ", rotations by Eq. (9)".to_owned(),
+        (Some(Setting::Choice(rotation)), Some(Setting::Count(passes))) => {
+            format!(", rotation {rotation} with {passes} pass{}", if passes == 1 { "" } else { "es" })
+        }
+        (Some(Setting::Choice(rotation)), _) => format!(", rotation {rotation} (exact)"),
+        _ => String::new(),
+    };
+    let is_chosen = properties.parameters.iter().any(|parameter| parameter.name == "damping_of");
+    let damping = match properties.get("damping_of") {
+        Some(Setting::Choice(of)) if properties.damping > 0.0 && is_chosen => format!(", damping of {of}"),
+        Some(Setting::Choice(of)) if properties.damping > 0.0 => format!(" of {of}"),
+        _ => String::new(),
+    };
+    let iterations = match properties.get("iterations") {
+        Some(Setting::Count(1)) => ", one iteration a step".to_owned(),
+        Some(Setting::Count(count)) => format!(", {count} iterations a step"),
+        _ => String::new(),
+    };
+    rotation + &damping + &limits(&properties) + &iterations
+}
+
+/// The unusual choices of a model, which captions append to its damping, such as `, exact rotations`.
+#[cfg(feature = "render")]
+pub(crate) fn unusual_choices(model: &dyn ElasticModel, body: &Body) -> String {
+    let properties = model.properties(body);
+    let damping = match properties.get("damping_of") {
+        Some(Setting::Choice("deformation")) if properties.damping > 0.0 => " of deformation",
+        _ => "",
+    };
+    let rotation = match properties.get("rotation") {
+        Some(Setting::Choice("vector-length")) => ", θ = |w|",
+        Some(Setting::Choice("linear-update")) => ", Eq. (16)",
+        Some(Setting::Choice("robust")) => ", exact rotations",
+        _ => "",
+    };
+    format!("{damping}{}{rotation}", limits(&properties))
+}
+
+/// What a model has besides constants and methods: factors, limits and moduli.
+fn limits(properties: &Properties) -> String {
+    let word = |&Parameter { name, value }: &Parameter| match (name, value) {
+        ("bending", Setting::Number(factor, _)) if factor != 1.0 => format!(", β = {}", fraction(factor)),
+        ("breaks_at", Setting::Number(strain, _)) => format!(", breaks at {strain}"),
+        ("limit", Setting::Number(limit, _)) => format!(", elongation below {limit} of the length"),
+        ("bulk", Setting::Number(bulk, unit)) => format!(", κ = {bulk:e} {unit}"),
+        _ => String::new(),
+    };
+    properties.parameters.iter().map(word).collect()
+}
+
+/// A number as a fraction, if it is between 0 and 1 and the denominator is small.
+fn fraction(number: f64) -> String {
+    let below = (2..10).map(f64::from).find(|below| (number * below - (number * below).round()).abs() < 1e-12);
+    match below.filter(|_| number > 0.0 && number < 1.0) {
+        Some(below) => format!("{}/{below}", (number * below).round()),
+        None => number.to_string(),
+    }
 }
 
 /// A material of a body: `E = 200 kPa, ν = 0.3`.
 fn material(Material { young, poisson }: Material, body: &Body) -> String {
-    let unit = if body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
+    let unit = if body.dimension() == Dimension::Plane { "N/m" } else { "Pa" };
     format!("E = {}, ν = {}", quantity(young, unit), rounded(poisson, 3))
 }
 
@@ -33,15 +98,16 @@ fn parts(model: &dyn ElasticModel, body: &Body) -> String {
     match (model.springs().len(), elements(body).as_slice()) {
         (1, _) => "1 spring".to_owned(),
         (0, [(count, name)]) => format!("{count} {name}"),
-        (0, _) => format!("{} elements", body.elements.len()),
+        (0, _) => format!("{} elements", body.elements().len()),
         (count, _) => format!("{count} springs"),
     }
 }
 
 /// The constants of a model of a body: `k = 10 kN/m, ζ = 0.1`, or `E = 200 kPa, ν = 0, ζ = 0.1`, as they were given.
 pub(crate) fn constants(model: &dyn ElasticModel, body: &Body) -> String {
-    let (k, damping) = (model.stiffness(), model.damping());
-    let of_material = model.typed_material().map(|given| material(given, body));
+    let properties = model.properties(body);
+    let (k, damping) = (properties.stiffness, properties.damping);
+    let of_material = properties.given_material().map(|given| material(given, body));
     let mut text = of_material.unwrap_or_else(|| format!("k = {}", quantity(k, "N/m")));
     if damping > 0.0 {
         text += &format!(", ζ = {}", rounded(damping / (2.0 * (k * body.lightest()).sqrt()), 3));
@@ -56,16 +122,16 @@ pub(crate) fn elements(body: &Body) -> Vec<(usize, &'static str)> {
     // Polygons with more than six sides are one group.
     let group = |nodes: &[u32], kind| if kind == Polygon { (kind, nodes.len().min(7)) } else { (kind, 0) };
     let of = |wanted| {
-        body.elements
+        body.elements()
             .iter()
-            .zip(&body.kinds)
+            .zip(body.kinds())
             .map(|(nodes, &kind)| (nodes, group(nodes, kind)))
             .filter(move |one| one.1 == wanted)
     };
     let names = |wanted: (ElementKind, usize)| match wanted {
         (Segment, _) => ["segment", "segments"],
         (Polygon, 3) | (Triangle, _) => ["triangle", "triangles"],
-        (Polygon, 4) if of(wanted).all(|(nodes, _)| is_square(nodes, &body.rest)) => ["square", "squares"],
+        (Polygon, 4) if of(wanted).all(|(nodes, _)| is_square(nodes, body.rest())) => ["square", "squares"],
         (Polygon, 4) => ["quadrilateral", "quadrilaterals"],
         (Polygon, 5) => ["pentagon", "pentagons"],
         (Polygon, 6) => ["hexagon", "hexagons"],
@@ -73,9 +139,9 @@ pub(crate) fn elements(body: &Body) -> Vec<(usize, &'static str)> {
         (Tetrahedron, _) => ["tetrahedron", "tetrahedra"],
         (Pyramid, _) => ["pyramid", "pyramids"],
         (Wedge, _) => ["wedge", "wedges"],
-        (Hexahedron, _) if of(wanted).all(|(nodes, _)| is_cube(nodes, &body.rest)) => ["cube", "cubes"],
+        (Hexahedron, _) if of(wanted).all(|(nodes, _)| is_cube(nodes, body.rest())) => ["cube", "cubes"],
         (Hexahedron, _) => ["hexahedron", "hexahedra"],
-        (Other, _) if of(wanted).count() == body.elements.len() => ["element", "elements"],
+        (Other, _) if of(wanted).count() == body.elements().len() => ["element", "elements"],
         (Other, _) => ["other element", "other elements"],
     };
     let polygons = (3..=7).map(|sides| (Polygon, sides));

@@ -69,8 +69,14 @@ impl Cause {
         let begin = end - run.step;
         let body = &run.bodies.bodies()[divergence.part];
         let size = |element: usize| {
-            let nodes: Vec<_> =
-                body.elements.iter().nth(element).into_iter().flatten().map(|&node| body.rest[node as usize]).collect();
+            let nodes: Vec<_> = body
+                .elements()
+                .iter()
+                .nth(element)
+                .into_iter()
+                .flatten()
+                .map(|&node| body.rest()[node as usize])
+                .collect();
             let (low, high) = bounds(&nodes);
             (high - low).max_element()
         };
@@ -152,7 +158,7 @@ impl Cause {
 
 /// The most steps of a run that each part of the search simulates.
 fn most_steps(run: &Run) -> u64 {
-    MOST_ELEMENT_STEPS / (run.body().elements.len() as u64).max(1)
+    MOST_ELEMENT_STEPS / (run.body().elements().len() as u64).max(1)
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 
 use super::growing::{Growing, Grown};
 use super::last_fit::Fitting;
-use super::{History, Row, Runner, Running, Stored, TimeSeries};
-use crate::sim::{Frame, RunFrame, State};
+use super::{Frame, History, Row, RunFrame, Runner, Running, Stored, TimeSeries};
+use crate::sim::State;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;

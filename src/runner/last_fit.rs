@@ -1,7 +1,8 @@
 //! The drawn state of a run that diverged: the last one that is not much wider than the body.
 
+use crate::runner::LastFit;
 use crate::scene::{Run, Scene};
-use crate::sim::{Crew, Divergence, LastFit, State, Status, World};
+use crate::sim::{Crew, Divergence, State, Status, World};
 use glam::DVec3;
 
 /// A state fits if the nodes of each body lie within this many times the radius of the body at rest or at the start,
@@ -33,7 +34,7 @@ impl Fitting {
 
 /// Whether a state of a run with nodes at `position` (m) fits.
 pub(crate) fn fits(run: &Run, position: &[DVec3]) -> bool {
-    let at_rest = run.bodies.bodies().iter().map(|body| radius(&body.rest));
+    let at_rest = run.bodies.bodies().iter().map(|body| radius(body.rest()));
     let usual = at_rest.zip(radii(run, &run.initial.position));
     radii(run, position).zip(usual).all(|(now, (at_rest, at_start))| now <= FITS * at_rest.max(at_start))
 }

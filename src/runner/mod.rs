@@ -2,6 +2,7 @@
 //! All other code simulates through this module.
 
 pub(crate) mod cause;
+mod frame;
 mod frames;
 pub(crate) mod growing;
 pub(crate) mod history;
@@ -13,9 +14,9 @@ mod stored;
 use crate::look::Traced;
 use crate::scene::{Recorded, Scene};
 use crate::sim::{
-    Body, Crew, Diagnostic, Diagnostics, Frame, Integrator, Moment, RunFrame, State, Status, Stepping, Surroundings,
-    World,
+    Body, Crew, Diagnostic, Diagnostics, Integrator, Moment, State, Status, Stepping, Surroundings, World,
 };
+pub use frame::{Frame, LastFit, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
 pub(crate) use history::Row;
 pub use history::{History, TimeSeries};
@@ -84,7 +85,7 @@ impl<'a> Runner<'a> {
         let share = rayon::current_num_threads() / all.max(1);
         let running = |&run: &usize| {
             let body = scene.runs[run].body();
-            let threads = share.min(body.elements.len() / LEAST).max(1);
+            let threads = share.min(body.elements().len() / LEAST).max(1);
             let mut world = scene.world(run);
             world.set_crew(Crew::new(threads));
             let running = Running {
@@ -402,8 +403,12 @@ impl Scene {
     /// If the scene has no such run.
     pub fn world(&self, run: usize) -> World {
         let run = &self.runs[run];
-        let surroundings =
-            Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: run.grips.clone() };
+        let surroundings = Surroundings {
+            gravity: self.gravity,
+            obstacles: self.obstacles.clone(),
+            grips: run.grips.clone(),
+            ..Surroundings::default()
+        };
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
         let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
         let bodies = run.bodies.bodies();

@@ -1,10 +1,11 @@
 //! The simulations of figures: states of runs at chosen moments, and the time series of a scene for charts.
 
+use crate::runner::RunFrame;
 use crate::runner::Runner;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
-use crate::sim::{Diagnostic, Moment, RunFrame, Scope, Snapshot};
+use crate::sim::{Diagnostic, Moment, Scope, Snapshot};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -61,11 +61,11 @@ impl Scene {
                 (has(&|_, _| true), "recordings have none; plot another diagnostic, such as \"kinetic\"")
             }
             Diagnostic::GlobalRotations => (
-                has(&|model, of| model.counts_global(&of.body)),
+                has(&|model, of| model.properties(&of.body).counts_fallbacks),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Broken => (
-                has(&|model, of| model.breaks(&of.body).is_some()),
+                has(&|model, of| model.properties(&of.body).breakable.is_some()),
                 "only models with `breaks_at` break; give it, or plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Residual => (

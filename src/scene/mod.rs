@@ -49,6 +49,8 @@ pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};
 pub use run::Run;
 pub use schema::schema;
 pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
+#[cfg(feature = "render")]
+pub(crate) use turning::brakes_rotation;
 
 use crate::look::{Subject, SubjectBody, SubjectRun, View};
 use crate::reading::words::{list, nearest, quoted};
@@ -159,7 +161,7 @@ impl Scene {
 
     /// Whether its bodies are in the plane or in space.
     pub(crate) fn dimension(&self) -> Dimension {
-        self.bodies[0].body.dimension
+        self.bodies[0].body.dimension()
     }
 
     /// Gives the runs their places, and the view the names of their bodies.

@@ -27,7 +27,7 @@ impl Scene {
     pub(super) fn misfits(&self, number: usize) -> Option<[String; 2]> {
         /// The least ratio. Units of length differ by 100 or 1000.
         const FAR: f64 = 100.0;
-        let of_rest = |run: &Run| run.bodies.bodies().iter().map(|body| longest(&body.rest)).fold(0.0, f64::max);
+        let of_rest = |run: &Run| run.bodies.bodies().iter().map(|body| longest(body.rest())).fold(0.0, f64::max);
         let simulated = self.runs.iter().filter(|run| run.recording.is_none()).map(of_rest).fold(0.0, f64::max);
         let run = self.runs.get(number).filter(|run| run.recording.is_some() && simulated > 0.0)?;
         let of_body = |body| longest(&run.initial.position[run.bodies.nodes(body)]);
@@ -66,7 +66,7 @@ impl Scene {
             found.iter().max_by(|one, other| one.strain.total_cmp(&other.strain))?;
         let mut names: Vec<_> = found.iter().map(|soft| &self.runs[soft.run].name).collect();
         names.dedup();
-        let unit = if body.body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
+        let unit = if body.body.dimension() == Dimension::Plane { "N/m" } else { "Pa" };
         let of = if body.name.is_empty() { "the body".to_owned() } else { quoted(&body.name) };
         let message = format!(
             "{of} is too soft to carry its own weight in {}: ρ g h / E = {}, with a height h of {} m and E = {}",
@@ -76,9 +76,10 @@ impl Scene {
             quantity(*young, unit)
         );
         let times = strain / 2.0 / FIRM;
-        let firm = match model.typed_material() {
+        let properties = model.properties(&body.body);
+        let firm = match properties.given_material() {
             Some(typed) => format!("young = {:e}", rounded(times * typed.young, 2)),
-            None => format!("stiffness = {:e}", rounded(times * model.stiffness(), 2)),
+            None => format!("stiffness = {:e}", rounded(times * properties.stiffness, 2)),
         };
         Some((*run, [message, format!("with {firm} the weight changes its height by a tenth")]))
     }
@@ -100,7 +101,7 @@ impl Scene {
         let heights = run.initial.position[nodes].iter().map(|at| at.dot(up));
         let (low, high) =
             heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (at.min(low), at.max(high)));
-        let (height, density) = (high - low, body.body.mass.iter().sum::<f64>() / volume);
+        let (height, density) = (high - low, body.body.mass().iter().sum::<f64>() / volume);
         let young = modulus(model, &body.body, up, volume)?;
         let strain = density * self.gravity.length() * height / young;
         Some(Soft { run: number, body, model, height, young, strain })
@@ -114,8 +115,8 @@ fn modulus(model: &dyn ElasticModel, body: &Arc<Body>, along: DVec3, volume: f64
     if let Some(material) = model.material(body) {
         return Some(material.young);
     }
-    let squeezed = body.rest.iter().map(|&at| at - along * (STRAIN * along.dot(at))).collect();
-    let (forces, memory) = (model.prepare(body), model.start(body, &body.rest));
+    let squeezed = body.rest().iter().map(|&at| at - along * (STRAIN * along.dot(at))).collect();
+    let (forces, memory) = (model.prepare(body), model.start(body, body.rest()));
     let report = forces.report(State::at_rest(squeezed).nodes(), &memory, &mut |_, _, _| ());
     report.energy.map(|energy| 2.0 * energy / (STRAIN * STRAIN * volume)).filter(|&young| young > 0.0)
 }

@@ -69,6 +69,7 @@ impl Run {
 
     /// The shortest period of a node of any of its bodies (s).
     pub(crate) fn shortest_period(&self) -> f64 {
-        self.models_and_bodies().map(|(model, body)| model.shortest_period(body)).fold(f64::INFINITY, f64::min)
+        let periods = self.models_and_bodies().map(|(model, body)| model.properties(body).shortest_period(body));
+        periods.fold(f64::INFINITY, f64::min)
     }
 }

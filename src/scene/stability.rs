@@ -3,7 +3,9 @@
 use super::{Run, RunSummary, Scene};
 use crate::reading::words::{quoted, short};
 use crate::sim::Integrator;
+use crate::sim::model::ElasticModel;
 use crate::sim::stability::Stability;
+use std::sync::Arc;
 
 impl Scene {
     /// The largest stable step of a run, and the name of the body that limits it; `None` if the run has only one, or no
@@ -47,7 +49,10 @@ impl Scene {
     pub(super) fn softened(&self, number: usize) -> Option<[String; 2]> {
         const MUCH: f64 = 0.1;
         let Run { name, bodies, models, step, of, .. } = &self.runs[number];
-        let of_each = models.iter().zip(bodies.bodies()).map(|(model, body)| model.softening(body, *step) - 1.0);
+        let softening = |(model, body): (&Arc<dyn ElasticModel>, _)| {
+            model.projection(body).map_or(0.0, |projection| projection.softening(*step) - 1.0)
+        };
+        let of_each = models.iter().zip(bodies.bodies()).map(softening);
         let (body, excess) = of_each.enumerate().max_by(|one, other| one.1.total_cmp(&other.1))?;
         if self.runs[number].recording.is_some() || excess <= MUCH {
             return None;

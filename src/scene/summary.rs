@@ -112,17 +112,17 @@ pub struct PartSummary {
 
 impl BodySummary {
     fn new(SceneBody { name, body, initial, .. }: &SceneBody) -> Self {
-        let (low, high) = bounds(&body.rest);
+        let (low, high) = bounds(body.rest());
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         Self {
             name: name.clone(),
             nodes: body.len(),
-            element_count: body.elements.len(),
+            element_count: body.elements().len(),
             elements: captions::elements(body).into_iter().map(of_kind).collect(),
-            extent: coordinates(high - low, body.dimension),
-            start: corners(&initial.position, body.dimension),
-            mass: body.mass.iter().sum(),
-            carried: body.carried.as_ref().map(|carried| carried.triangles.len()),
+            extent: coordinates(high - low, body.dimension()),
+            start: corners(&initial.position, body.dimension()),
+            mass: body.mass().iter().sum(),
+            carried: body.carried().map(|carried| carried.triangles.len()),
         }
     }
 }
@@ -273,6 +273,7 @@ fn path(motion: &Motion) -> String {
             format!(", moving along {} keys until {} s{again}", keys.len(), short(last))
         }
         Motion::Swing { period, .. } => format!(", swinging once in {} s", short(*period)),
+        Motion::Along(_) => ", moving".to_owned(),
     }
 }
 

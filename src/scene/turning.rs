@@ -2,13 +2,15 @@
 
 use super::{Run, Scene};
 use crate::reading::words::quoted;
-use crate::sim::{Motion, Obstacle, Shape};
+use crate::sim::model::shape_based::DampingReading;
+use crate::sim::model::{ElasticModel, Setting};
+use crate::sim::{Body, Motion, Obstacle, Shape};
 use glam::DVec3;
 
 impl Scene {
     /// Why a body of a run will turn while damping brakes every rotation; `None` if no body does, or none is damped so.
     pub(crate) fn braked(&self, run: &Run) -> Option<&'static str> {
-        let mut parts = run.models.iter().enumerate().filter(|(_, model)| model.brakes_rotation());
+        let mut parts = run.models_and_bodies().enumerate().filter(|(_, (model, body))| brakes_rotation(*model, body));
         parts.find_map(|(body, _)| self.turning(run, body))
     }
 
@@ -16,7 +18,8 @@ impl Scene {
     pub(super) fn brakes_rotation(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
         let reason = self.braked(run)?;
-        let is_compared = self.runs.iter().flat_map(|run| &run.models).any(|model| !model.brakes_rotation());
+        let mut all = self.runs.iter().flat_map(Run::models_and_bodies);
+        let is_compared = all.any(|(model, body)| !brakes_rotation(model, body));
         is_compared.then(|| {
             let name = quoted(&run.name);
             let message = format!("the damping of {name} also brakes rotation, and its body will turn: {reason}");
@@ -31,11 +34,12 @@ impl Scene {
         const PART: f64 = 0.1;
         let (nodes, of) = (run.bodies.nodes(body), &run.bodies.bodies()[body]);
         let (position, velocity) = (&run.initial.position[nodes.clone()], &run.initial.velocity[nodes.clone()]);
-        let mass: f64 = of.mass.iter().sum();
-        let mean = |of_node: &[DVec3]| of_node.iter().zip(&of.mass).map(|(&at, mass)| at * *mass).sum::<DVec3>() / mass;
+        let mass: f64 = of.mass().iter().sum();
+        let mean =
+            |of_node: &[DVec3]| of_node.iter().zip(of.mass()).map(|(&at, mass)| at * *mass).sum::<DVec3>() / mass;
         let (centre, drift) = (mean(position), mean(velocity));
         let (mut momentum, mut size) = (DVec3::ZERO, 0.0);
-        for ((&at, &speed), &mass) in position.iter().zip(velocity).zip(&of.mass) {
+        for ((&at, &speed), &mass) in position.iter().zip(velocity).zip(of.mass()) {
             momentum += (at - centre).cross(speed - drift) * mass;
             size += (at - centre).length() * (speed - drift).length() * mass;
         }
@@ -69,6 +73,13 @@ impl Scene {
         });
         is_oblique.then_some("it meets an obstacle at an angle")
     }
+}
+
+/// Whether the damping of a model brakes the rotation of a rigid body.
+pub(crate) fn brakes_rotation(model: &dyn ElasticModel, body: &Body) -> bool {
+    let properties = model.properties(body);
+    let relative = Setting::Choice(DampingReading::RelativeMotion.name());
+    properties.damping > 0.0 && properties.get("damping_of") == Some(relative)
 }
 
 /// The normals of the flat faces of an obstacle.

@@ -99,7 +99,7 @@ pub(crate) fn measure(protocol: &Ratio, watch: &Watch<'_>) -> Option<Ratios> {
     for &side in &protocol.sides {
         let scene = block(side);
         let mut worlds: Vec<_> = (0..scene.runs.len()).map(|run| scene.world(run)).collect();
-        let cubes = scene.runs[0].body().elements.len() as u64;
+        let cubes = scene.runs[0].body().elements().len() as u64;
         let steps = (protocol.turn / cubes).max(1);
         // The first access to memory is not timed.
         worlds.iter_mut().for_each(|world| world.advance(1));

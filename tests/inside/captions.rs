@@ -1,14 +1,19 @@
 //! Descriptions of models and elements, and quantities with units.
 
 use super::*;
+use crate::sim::Dimension;
 use crate::sim::model::mass_spring::MassSpring;
 use crate::sim::model::shape_based::ShapeBased;
-use crate::sim::{Dimension, Solids};
 
 fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Body {
     let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
     let mass = vec![1.0; rest.len()];
-    Body::new(dimension, rest, mass, elements.iter().copied().collect(), Solids::Ordered, None)
+    Body::builder(rest)
+        .dimension(dimension)
+        .elements(elements.iter().copied().collect())
+        .masses(mass)
+        .build()
+        .expect("a body")
 }
 
 /// The corners of a box far from the origin, with one more node above it.

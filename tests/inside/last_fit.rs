@@ -20,7 +20,7 @@ fn from_the_last_state_that_fits_on_all_frames_show_it() {
     let LastFit { snapshot, times_wider } = last_fit;
     assert!(
         fits(&scene.runs[2], &snapshot.position)
-            && radius(&snapshot.position) > 1.1 * radius(&scene.runs[2].body().rest)
+            && radius(&snapshot.position) > 1.1 * radius(scene.runs[2].body().rest())
     );
     for frame in &frames {
         let run = &frame.runs[1];
@@ -139,7 +139,7 @@ fn a_radius_does_not_change_as_a_body_turns() {
 #[test]
 fn a_body_that_starts_wide_fits() {
     let mut run = scene().runs.swap_remove(0);
-    let rest = run.body().rest.clone();
+    let rest = run.body().rest().to_vec();
     let wider = |times: f64| rest.iter().map(|&at| at * times).collect::<Vec<_>>();
     assert!(!fits(&run, &wider(2.0)));
     run.initial.position = wider(2.0);

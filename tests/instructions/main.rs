@@ -70,7 +70,7 @@ fn a_step_takes_no_more_instructions_than_it_did() {
     for (at, case) in CASES.into_iter().enumerate() {
         // The difference cancels the setup and the first steps.
         let [few, many] = [10, 60].map(|steps| instructions(folder.path(), at, steps));
-        let each = (many - few) / (50 * scene(case).bodies[0].body.elements.len() as u64);
+        let each = (many - few) / (50 * scene(case).bodies[0].body.elements().len() as u64);
         println!("{each} instructions per element and step, {} at most: {}{}", case.2, case.1, case.0);
         if each > case.2 {
             slower.push((case, each));

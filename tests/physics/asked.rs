@@ -5,7 +5,7 @@ use localshape::runner::Runner;
 use localshape::runner::moments::Taking;
 use localshape::scene::figure::{Content, Figure};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
+use localshape::sim::model::{ElasticModel, ForceModel, Properties, Report, Scratch, Share};
 use localshape::sim::{Body, Diagnostic, Diagnostics, Nodes, Scope};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,8 +23,8 @@ struct CountingForces {
 }
 
 impl ElasticModel for Counting {
-    fn stiffness(&self) -> f64 {
-        self.model.stiffness()
+    fn properties(&self, body: &Body) -> Properties {
+        self.model.properties(body)
     }
 
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {

@@ -6,12 +6,12 @@ use localshape::sim::Snapshot;
 
 /// Signed area of the triangle with the largest obtuse angle, divided by its area at rest.
 fn obtuse(scene: &Scene, snapshot: &Snapshot) -> f64 {
-    let nodes = &scene.bodies[0].body.elements[5];
+    let nodes = &scene.bodies[0].body.elements()[5];
     let area = |at: &[glam::DVec3]| {
         let [a, b, c] = [0, 1, 2].map(|corner: usize| at[nodes[corner] as usize]);
         (b - a).cross(c - a).z
     };
-    area(&snapshot.position) / area(&scene.bodies[0].body.rest)
+    area(&snapshot.position) / area(scene.bodies[0].body.rest())
 }
 
 /// The shipped scene with another height of the fall (m), turn (rad) and stiffness (N/m).

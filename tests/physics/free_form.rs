@@ -9,8 +9,8 @@ fn bears_of_irregular_elements_keep_their_shape_where_springs_fold() {
         [("free-form-plane", ElementKind::Polygon, 3), ("free-form-space", ElementKind::Other, 10)]
     {
         let scene = shipped(name, &[]);
-        assert!(scene.bodies[0].body.kinds.iter().all(|&found| found == kind));
-        let corners: std::collections::BTreeSet<_> = scene.bodies[0].body.elements.iter().map(<[u32]>::len).collect();
+        assert!(scene.bodies[0].body.kinds().iter().all(|&found| found == kind));
+        let corners: std::collections::BTreeSet<_> = scene.bodies[0].body.elements().iter().map(<[u32]>::len).collect();
         assert!(corners.len() > 4, "elements of many shapes: {corners:?}");
         let shape = after(&scene, "Local shape", 6.0).diagnostics;
         assert_eq!(shape.turned_over, 0, "{name}");

@@ -52,16 +52,16 @@ fn stays(scene: &Scene, step: f64, steps: u64) -> bool {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
-    let across = if scene.bodies[0].body.dimension == Dimension::Plane { 0.0 } else { small };
+    let across = if scene.bodies[0].body.dimension() == Dimension::Plane { 0.0 } else { small };
     let mut shaken = |rest: &DVec3| *rest + DVec3::new(small * noise(), small * noise(), across * noise());
-    let position = scene.bodies[0].body.rest.iter().map(&mut shaken).collect();
+    let position = scene.bodies[0].body.rest().iter().map(&mut shaken).collect();
     let surroundings = Surroundings { grips: scene.runs[0].grips.clone(), ..Surroundings::default() };
     let stepping = Stepping { kernel: run.kernel, ..Stepping::new(run.integrator, step) };
     let mut world =
         World::new(&scene.bodies[0].body, State::at_rest(position), run.models[0].as_ref(), surroundings, stepping);
     let away = |world: &World| {
         let position = &world.state().position;
-        position.iter().zip(&scene.bodies[0].body.rest).map(|(at, rest)| at.distance(*rest)).fold(0.0, f64::max)
+        position.iter().zip(scene.bodies[0].body.rest()).map(|(at, rest)| at.distance(*rest)).fold(0.0, f64::max)
     };
     for _ in 0..100 {
         world.advance(steps.div_ceil(100));

@@ -5,8 +5,9 @@ use super::{draw, frame, gpu, parse, unknown};
 use glam::{DVec3, Vec3};
 use image::RgbImage;
 use localshape::picture::{LineKind, Panel};
+use localshape::runner::Frame;
 use localshape::scene::Scene;
-use localshape::sim::{Assembly, Body, Carried, Frame, Weights};
+use localshape::sim::{Assembly, Body, Carried, Weights};
 use rayon::ThreadPoolBuilder;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -15,7 +16,10 @@ use std::sync::Arc;
 fn carrying(scene: &Scene, surface: impl Fn(&Body) -> Carried) -> Scene {
     let mut scene = scene.clone();
     for run in &mut scene.runs {
-        let carry = |body: &Arc<Body>| Arc::new(Body { carried: Some(Arc::new(surface(body))), ..Body::clone(body) });
+        let carry = |body: &Arc<Body>| {
+            let carried = Arc::new(surface(body));
+            Arc::new(Body::clone(body).with_carried(carried).expect("points of the body"))
+        };
         run.bodies = Arc::new(Assembly::new(run.bodies.bodies().iter().map(carry).collect()));
     }
     scene
@@ -25,26 +29,26 @@ fn carrying(scene: &Scene, surface: impl Fn(&Body) -> Carried) -> Scene {
 fn own(body: &Body) -> Carried {
     let mut weights = Weights::default();
     (0..body.len() as u32).for_each(|node| weights.push(&[node], &[1.0]));
-    let outer = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
+    let outer = body.faces().nodes.iter().zip(&body.faces().outer).filter(|(_, outer)| outer.is_none());
     let triangles = outer.flat_map(|(face, _)| (2..face.len()).map(|at| [face[0], face[at - 1], face[at]])).collect();
-    Carried { rest: body.rest.clone(), triangles, weights }
+    Carried { rest: body.rest().to_vec(), triangles, weights }
 }
 
 /// A sphere in a body of one cube.
 fn sphere(body: &Body) -> Carried {
     const ROWS: u32 = 12;
     const COLUMNS: u32 = 24;
-    let (low, high) = (body.rest[0], body.rest[body.len() - 1]);
+    let (low, high) = (body.rest()[0], body.rest()[body.len() - 1]);
     let mut carried = Carried { rest: Vec::new(), triangles: Vec::new(), weights: Weights::default() };
     let mut add = |polar: f64, round: f64| {
         let way = DVec3::new(polar.sin() * round.cos(), polar.cos(), polar.sin() * round.sin());
         let share = DVec3::splat(0.5) + 0.45 * way;
         let weight = |&node: &u32| {
-            let end = (body.rest[node as usize] - low) / (high - low);
+            let end = (body.rest()[node as usize] - low) / (high - low);
             (end * share + (1.0 - end) * (1.0 - share)).to_array().iter().product()
         };
-        let weights: Vec<f64> = body.elements[0].iter().map(weight).collect();
-        carried.weights.push(&body.elements[0], &weights);
+        let weights: Vec<f64> = body.elements()[0].iter().map(weight).collect();
+        carried.weights.push(&body.elements()[0], &weights);
         carried.rest.push(low + share * (high - low));
     };
     add(0.0, 0.0);

@@ -4,10 +4,11 @@ use super::listed::{Composer, Curve, Listed, Mark, line};
 use super::{assert_words_are_clear, fig4b, gpu, parse, renderer, unknown};
 use localshape::look::{Style, Theme};
 use localshape::picture::{TextRun, Weight, left_out};
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::Scene;
-use localshape::sim::{Diagnostic, Frame, Status};
+use localshape::sim::{Diagnostic, Status};
 
 /// The scene of Fig. 4(b) with a chart, and some of its frames.
 fn with_chart<const N: usize>(chart: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {

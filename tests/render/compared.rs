@@ -4,12 +4,13 @@ use super::listed::{Composer, Curve, Listed, compose_figure};
 use super::{fig4b, unknown};
 use localshape::look::{Ghost, Style, Theme, Traced};
 use localshape::picture::{Panel, TextRun};
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::{Frame, Status};
+use localshape::sim::Status;
 
 /// The dashed curves of a colour.
 fn outlines(picture: &Listed, colour: [u8; 3]) -> Vec<&Curve> {

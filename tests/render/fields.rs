@@ -5,9 +5,10 @@ use super::{compose, fig4b, gpu, parse, renderer};
 use localshape::colour::{Vision, difference, oklab};
 use localshape::look::{ColourMap, ColourScale, EdgeStyle, Style, Theme, Visible};
 use localshape::picture::{Item, Mesh, SHADES, Second};
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::{Divergence, Field, Frame, Status};
+use localshape::sim::{Divergence, Field, Status};
 
 const NOTHING: Visible = Visible::NONE;
 const EVERYTHING: Visible = Visible { surfaces: true, nodes: true, springs: true, displacements: true, cage: true };
@@ -242,7 +243,7 @@ fn arrows_end_at_their_nodes() {
                 frame.runs.iter().enumerate().any(|(panel, run)| {
                     let snapshot = &run.snapshot;
                     (0..scene.bodies[0].body.len()).any(|node| {
-                        let start = snapshot.placements[0].place(scene.bodies[0].body.rest[node]);
+                        let start = snapshot.placements[0].place(scene.bodies[0].body.rest()[node]);
                         let at = if of_start { start } else { snapshot.position[node] };
                         // The camera looks at the origin of the panel's coordinates.
                         let relative = (at - scene.view.camera.target) / scene.view.side;

@@ -4,9 +4,9 @@ use super::{compose, draw, fig4b, gpu, parse, renderer};
 use glam::Vec3;
 use image::RgbImage;
 use localshape::picture::LineKind;
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::Frame;
 
 /// The cubes of Fig. 4(b) at their start, with the one in the middle turned over.
 fn middle_turned_over() -> (Scene, Frame) {

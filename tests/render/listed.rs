@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 use localshape::picture::{self, Item, Paint, Path, Pen, Picture, Step, TextRun};
+use localshape::runner::Frame;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
 use localshape::scene::Scene;
 use localshape::scene::figure::Figure;
-use localshape::sim::Frame;
 use std::ops::{Deref, DerefMut};
 
 /// A picture and what its list shows.

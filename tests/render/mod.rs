@@ -34,10 +34,10 @@ use listed::{Composer, Listed};
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::picture::{Picture, TextRun};
 use localshape::render::Renderer;
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::Frame;
 use std::sync::LazyLock;
 
 static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match Gpu::new(&AdapterChoice::Auto) {

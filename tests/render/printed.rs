@@ -8,9 +8,10 @@ use localshape::look::{Style, Theme};
 use localshape::picture::{Image, Item, Paint, Path, Pen, Picture, compose_figure};
 use localshape::render::Renderer;
 use localshape::runner::moments::Moments;
+use localshape::runner::{Frame, LastFit};
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::{Divergence, Frame, LastFit, Status};
+use localshape::sim::{Divergence, Status};
 use localshape::vector::{Format, Page, write};
 
 /// Colours are compared as means of squares of so many pixels: borders are smoothed in other ways.

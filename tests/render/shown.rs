@@ -6,10 +6,11 @@ use localshape::colour::contrast;
 use localshape::look::{ColourMap, ColourScale, Palette, Theme};
 use localshape::picture::winding;
 use localshape::picture::{LineKind, Mesh, TextRun, Weight};
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::{Assembly, Divergence, Field, Frame, Status};
+use localshape::sim::{Assembly, Body, Divergence, Field, Status};
 use std::collections::HashMap;
 
 /// A scene with other cells, runs and view.
@@ -62,7 +63,7 @@ fn both_sets_are_closed_surfaces_that_look_outward() {
     let snapshot = &mut frame.runs[1].snapshot;
     // The lowest layer of the 27 cubes: those with the lowest centres.
     let height = |element: usize| -> f64 {
-        scene.bodies[0].body.elements[element].iter().map(|&node| scene.bodies[0].body.rest[node as usize].y).sum()
+        scene.bodies[0].body.elements()[element].iter().map(|&node| scene.bodies[0].body.rest()[node as usize].y).sum()
     };
     let mut order: Vec<_> = (0..27).collect();
     order.sort_by(|&a, &b| height(a).total_cmp(&height(b)));
@@ -208,8 +209,9 @@ fn few_elements_are_counted_in_squares() {
 /// The scene of Fig. 4(b) with all lengths and speeds times a factor.
 fn scaled(factor: f64) -> (Scene, Frame) {
     let (mut scene, mut frame) = fig4b(4);
-    let mut body = (*scene.bodies[0].body).clone();
-    body.rest.iter_mut().for_each(|at| *at *= factor);
+    let body = &scene.bodies[0].body;
+    let scaled = Body::builder(body.rest().iter().map(|&at| at * factor).collect()).dimension(body.dimension());
+    let body = scaled.elements(body.elements().clone()).masses(body.mass().to_vec()).build().expect("a body");
     let bodies = std::sync::Arc::new(Assembly::new(vec![std::sync::Arc::new(body)]));
     for run in &mut scene.runs {
         run.bodies = bodies.clone();
@@ -351,7 +353,7 @@ fn an_element_of_any_shape_is_drawn_by_its_hull() {
     // A cube without one corner: three squares and four triangles.
     let nodes = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0],[1,0,1],[0,1,1]]";
     let (scene, picture) = one_element(nodes, 7);
-    assert_eq!(scene.bodies[0].body.faces.nodes.len(), 7);
+    assert_eq!(scene.bodies[0].body.faces().nodes.len(), 7);
     let panel = &picture.panels[0];
     assert_eq!(panel.sound.triangles.len(), 3 * 2 + 4);
     assert_eq!(panel.lines.iter().filter(|line| line.kind == LineKind::Edge).count(), 12);
@@ -530,7 +532,7 @@ fn springs_show_their_own_strain_without_its_sign_unless_the_range_has_one() {
     let springs = scene.runs[1].models[0].springs().to_vec();
     let strain = |[a, b]: [u32; 2]| {
         let length = |points: &[glam::DVec3]| points[a as usize].distance(points[b as usize]);
-        length(&frame.runs[1].snapshot.position) / length(&body.rest) - 1.0
+        length(&frame.runs[1].snapshot.position) / length(body.rest()) - 1.0
     };
     let count = |is: &dyn Fn(f64) -> bool| springs.iter().filter(|&&ends| is(strain(ends))).count();
     for (range, low, high) in [

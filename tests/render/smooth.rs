@@ -6,9 +6,9 @@ use glam::Vec2;
 use image::RgbImage;
 use localshape::picture::{Item, Path};
 use localshape::picture::{LineKind, Second, Stroke};
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::Frame;
 use std::collections::HashMap;
 
 const WORLD: &str = "

@@ -4,9 +4,10 @@ use super::{all, gpu, linear, parse, renderer, unknown};
 use image::RgbImage;
 use localshape::gpu::Gpu;
 use localshape::render::Renderer;
+use localshape::runner::Frame;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::{Dimension, Frame};
+use localshape::sim::Dimension;
 
 /// Frames of a film in which the fastest point moves by one pixel, and so through all positions in a pixel.
 const FRAMES: u64 = 21;
@@ -152,7 +153,7 @@ fn nothing_flickers_in_slow_motion() {
         // Obstacles move at most two pixels from one frame of these scenes to the next.
         let part = SLOW / way(&scene, &from, &to).max(2.0);
         assert_steady(&format!("{file} {index}"), &film(gpu, &scene, &between([&from, &to], part)));
-        if scene.bodies[0].body.dimension == Dimension::Space {
+        if scene.bodies[0].body.dimension() == Dimension::Space {
             assert_steady(&format!("around {file} {index}"), &around(gpu, &mut scene, &from));
         }
     }

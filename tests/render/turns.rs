@@ -2,7 +2,7 @@
 
 use super::listed::{Listed, line};
 use super::{compose, draw, frame, gpu, parse, renderer};
-use localshape::sim::Frame;
+use localshape::runner::Frame;
 
 const SIZE: [u32; 2] = [160, 100];
 const CUBES: &str = "body = { lattice = { cells = [2, 2, 2], side = 0.2 }, lowest = 0.1 }";
@@ -54,7 +54,7 @@ fn pictures() -> Vec<Listed> {
         let mut frame = frame(&scene, 0);
         change(&mut frame);
         let snapshot = &mut frame.runs[0].snapshot;
-        let values = if view == SPEED { snapshot.position.len() } else { scene.bodies[0].body.elements.len() };
+        let values = if view == SPEED { snapshot.position.len() } else { scene.bodies[0].body.elements().len() };
         snapshot.field = (0..values).map(|at| 0.1 * at as f64).collect();
         for near in [1.0, 0.5] {
             scene.view.camera.distance *= near;

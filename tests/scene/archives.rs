@@ -128,15 +128,15 @@ fn archives_written_by_numpy_are_read_compressed_or_not() {
     for bytes in BY_NUMPY {
         let scene = good(bytes, SCENE);
         let body = &scene.bodies[0].body;
-        assert_eq!(body.kinds, [ElementKind::Hexahedron, ElementKind::Pyramid]);
-        assert_eq!(&body.elements[1], [4, 5, 7, 6, 8]);
-        assert_eq!(body.rest[8], DVec3::new(0.5, 0.5, 1.5));
+        assert_eq!(body.kinds(), [ElementKind::Hexahedron, ElementKind::Pyramid]);
+        assert_eq!(&body.elements()[1], [4, 5, 7, 6, 8]);
+        assert_eq!(body.rest()[8], DVec3::new(0.5, 0.5, 1.5));
         assert_eq!(scene.runs[0].initial.position[8], DVec3::new(0.75, 0.75, 2.25));
         assert_eq!(scene.runs[0].initial.position[1], DVec3::new(1.5, 0.0, 0.0));
         assert!(scene.runs[0].initial.velocity.iter().all(|&velocity| velocity == -DVec3::Y));
-        assert_eq!(body.mass[8], 9.0);
-        assert_eq!((&body.faces.nodes[0], &body.faces.nodes[1]), (&[4, 5, 7, 6][..], &[4, 5, 8][..]));
-        assert_eq!((body.faces.inner[0], body.faces.outer[0]), (Some(0), Some(1)));
+        assert_eq!(body.mass()[8], 9.0);
+        assert_eq!((&body.faces().nodes[0], &body.faces().nodes[1]), (&[4, 5, 7, 6][..], &[4, 5, 8][..]));
+        assert_eq!((body.faces().inner[0], body.faces().outer[0]), (Some(0), Some(1)));
         assert!(description(scene.runs[1].models[0].as_ref(), body).starts_with("2 springs,"));
     }
     assert_eq!(good(BY_NUMPY[0], SCENE).digest, good(BY_NUMPY[1], SCENE).digest);
@@ -352,7 +352,7 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
     let right = [0, 1, 2, 3, 4, 5, 6, 7];
     let turned = [4, 5, 6, 7, 0, 1, 2, 3];
     let around = [0, 1, 3, 2, 4, 5, 7, 6];
-    assert_eq!(good(&row_of_cubes(|_| right), SCENE).bodies[0].body.elements.len(), 12);
+    assert_eq!(good(&row_of_cubes(|_| right), SCENE).bodies[0].body.elements().len(), 12);
     wrong(
         &row_of_cubes(|_| turned),
         &["all 12 elements of `body.npz: elements` are turned inside out at rest write convex = true in [body] \
@@ -419,7 +419,7 @@ fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
             CompressionMethod::Stored,
         )
     };
-    assert_eq!(good(&ring([0, 1, 2, 3, 4, 5, 6, 7]), SCENE).bodies[0].body.elements.len(), 12);
+    assert_eq!(good(&ring([0, 1, 2, 3, 4, 5, 6, 7]), SCENE).bodies[0].body.elements().len(), 12);
     for other in [[0, 1, 3, 2, 4, 5, 7, 6], [4, 5, 7, 6, 0, 1, 3, 2]] {
         wrong(&ring(other), &["all 12 elements of `body.npz: elements` list their corners around their sides"]);
     }
@@ -619,7 +619,7 @@ fn a_scene_does_not_say_what_its_file_says() {
         assert_eq!(mistake.message, format!("`body.{key}` and `body.npz: masses` exclude each other"));
         let without = with(|arrays| arrays.retain(|array| array.name != "masses"));
         let scene = Place::new(&without).load(&both, &Limits::default()).unwrap();
-        assert!((scene.bodies[0].body.mass.iter().sum::<f64>() - 1.0).abs() < 1e-15, "a square of 1 m²");
+        assert!((scene.bodies[0].body.mass().iter().sum::<f64>() - 1.0).abs() < 1e-15, "a square of 1 m²");
     }
     let lines: Vec<_> = error.mistakes().iter().map(|mistake| (mistake.line, mistake.message.as_str())).collect();
     assert_eq!(

@@ -49,7 +49,7 @@ const BODIES: [(&str, Dimension, Sizes); 13] = [
 
 fn sizes(scene: &Scene) -> Vec<(usize, usize)> {
     let mut sizes = BTreeMap::new();
-    scene.bodies[0].body.elements.iter().for_each(|nodes| *sizes.entry(nodes.len()).or_insert(0) += 1);
+    scene.bodies[0].body.elements().iter().for_each(|nodes| *sizes.entry(nodes.len()).or_insert(0) += 1);
     sizes.into_iter().collect()
 }
 
@@ -64,14 +64,14 @@ fn end(scene: &Scene) -> Vec<Vec<DVec3>> {
 fn every_rule_makes_the_body_that_it_says() {
     for (body, dimension, expected) in BODIES {
         let scene = good(&world(body, dimension));
-        assert_eq!(scene.bodies[0].body.dimension, dimension, "{body}");
+        assert_eq!(scene.bodies[0].body.dimension(), dimension, "{body}");
         if !expected.is_empty() {
             assert_eq!(sizes(&scene), expected, "{body}");
         }
         // Each body stands at the level of the origin, and all nodes belong to elements.
-        let lowest = scene.bodies[0].body.rest.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
+        let lowest = scene.bodies[0].body.rest().iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
         assert!(lowest.abs() < 1e-15, "{body}: {lowest}");
-        let mut nodes: Vec<u32> = scene.bodies[0].body.elements.indices().to_vec();
+        let mut nodes: Vec<u32> = scene.bodies[0].body.elements().indices().to_vec();
         nodes.sort_unstable();
         nodes.dedup();
         assert_eq!(nodes.len(), scene.bodies[0].body.len(), "{body}");
@@ -113,9 +113,9 @@ fn every_rule_puts_the_body_where_it_is_said_to_be() {
 fn a_lattice_has_the_same_nodes_however_it_is_cut() {
     let nodes =
         |more: &str| good(&world(&format!("lattice = {{ cells = [4, 3, 2], side = 0.1{more} }}"), Dimension::Space));
-    let plain = nodes("").bodies[0].body.rest.clone();
-    assert_eq!(nodes(", elements = 'tetrahedra'").bodies[0].body.rest, plain);
-    assert_eq!(nodes(", elements = 'mixed', seed = 9").bodies[0].body.rest[..plain.len()], plain);
+    let plain = nodes("").bodies[0].body.rest().to_vec();
+    assert_eq!(nodes(", elements = 'tetrahedra'").bodies[0].body.rest(), plain);
+    assert_eq!(nodes(", elements = 'mixed', seed = 9").bodies[0].body.rest()[..plain.len()], plain);
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn the_seed_chooses_the_body_and_one_is_the_default() {
         let lattice =
             format!("lattice = {{ cells = [4, 3, 2], side = 0.1, elements = 'mixed', irregular = 0.2{more} }}");
         let scene = good(&world(&lattice, Dimension::Space));
-        (scene.bodies[0].body.rest.clone(), scene.bodies[0].body.elements.clone(), scene.digest)
+        (scene.bodies[0].body.rest().to_vec(), scene.bodies[0].body.elements().clone(), scene.digest)
     };
     let one = rest("");
     assert_eq!(rest(", seed = 1"), one);
@@ -167,20 +167,20 @@ fn irregular_blocks_have_no_element_that_is_nearly_flat() {
                 good(&format!("body.lattice = {{ {rule}, seed = {seed} }}\n{WORLD}")).bodies.remove(0).body
             };
             let (regular, moved) = (block(0.0), block(0.4));
-            assert_eq!(regular.elements, moved.elements);
-            for element in regular.elements.iter() {
-                for corner in corners(element.len(), regular.dimension) {
+            assert_eq!(regular.elements(), moved.elements());
+            for element in regular.elements().iter() {
+                for corner in corners(element.len(), regular.dimension()) {
                     let spanned = |rest: &[DVec3]| {
                         let at =
                             |place: usize| rest[element[corner[place]] as usize] - rest[element[corner[0]] as usize];
                         let area = at(1).cross(at(2));
                         if corner.len() == 3 { area.z } else { area.dot(at(3)) }
                     };
-                    let left = spanned(&moved.rest) / spanned(&regular.rest);
+                    let left = spanned(moved.rest()) / spanned(regular.rest());
                     assert!(left >= 0.1, "{cells} {elements}, seed {seed}, element {element:?}: {left}");
                 }
             }
-            moved_far += regular.rest.iter().zip(&moved.rest).filter(|(a, b)| a.distance(**b) > 0.25).count();
+            moved_far += regular.rest().iter().zip(moved.rest()).filter(|(a, b)| a.distance(**b) > 0.25).count();
         }
         assert!(moved_far > 0, "{cells} {elements}: and yet they are irregular");
     }
@@ -193,10 +193,10 @@ fn random_bodies_are_the_same_everywhere() {
         "lattice = { cells = [3, 3, 3], side = 0.1, elements = 'mixed', irregular = 0.2 }",
         Dimension::Space,
     ));
-    let bits = scene.bodies[0].body.rest.iter().flat_map(|node| node.to_array()).map(f64::to_bits);
-    let bits = bits.chain(scene.bodies[0].body.elements.indices().iter().map(|&index| index.into()));
+    let bits = scene.bodies[0].body.rest().iter().flat_map(|node| node.to_array()).map(f64::to_bits);
+    let bits = bits.chain(scene.bodies[0].body.elements().indices().iter().map(|&index| index.into()));
     let sum = bits.fold(0u64, |sum, bits| (sum ^ bits).wrapping_mul(0x0100_0000_01b3).rotate_left(23));
-    assert_eq!((scene.bodies[0].body.len(), scene.bodies[0].body.elements.len(), sum), RANDOM);
+    assert_eq!((scene.bodies[0].body.len(), scene.bodies[0].body.elements().len(), sum), RANDOM);
 }
 
 const RANDOM: (usize, usize, u64) = (78, 127, 7_934_938_136_864_051_000);
@@ -207,14 +207,14 @@ fn listed(scene: &Scene) -> (String, impl Fn(usize) -> usize) {
     // A stride without a common factor gives a permutation.
     let stride = [7, 11, 13].into_iter().find(|stride| !count.is_multiple_of(*stride)).expect("one of them");
     let renamed = move |node: usize| (node * stride + 3) % count;
-    let point = |at: DVec3| match scene.bodies[0].body.dimension {
+    let point = |at: DVec3| match scene.bodies[0].body.dimension() {
         Dimension::Plane => format!("[{:?}, {:?}]", at.x, at.y),
         Dimension::Space => format!("[{:?}, {:?}, {:?}]", at.x, at.y, at.z),
     };
     let mut nodes = vec![String::new(); count];
-    scene.bodies[0].body.rest.iter().enumerate().for_each(|(node, &at)| nodes[renamed(node)] = point(at));
+    scene.bodies[0].body.rest().iter().enumerate().for_each(|(node, &at)| nodes[renamed(node)] = point(at));
     let renamed_all = |element: &[u32]| element.iter().map(|&node| renamed(node as usize)).collect();
-    let mut elements: Vec<Vec<usize>> = scene.bodies[0].body.elements.iter().map(renamed_all).collect();
+    let mut elements: Vec<Vec<usize>> = scene.bodies[0].body.elements().iter().map(renamed_all).collect();
     elements.reverse();
     (format!("nodes = [{}]\nelements = {elements:?}", nodes.join(", ")), renamed)
 }
@@ -280,7 +280,7 @@ fn elements_of_every_shape_run_in_both_models() {
         let dimension = if nodes.matches(',').count() == 2 * count - 1 { Dimension::Plane } else { Dimension::Space };
         let scene = world(&format!("nodes = {nodes}\nelements = [{all:?}]\nlowest = 0.1"), dimension);
         let scene = good(&scene.replace("edges+face-diagonals", "all"));
-        assert_eq!(scene.bodies[0].body.dimension, dimension, "{name}");
+        assert_eq!(scene.bodies[0].body.dimension(), dimension, "{name}");
         for positions in end(&scene) {
             assert!(positions.iter().all(|at| at.is_finite() && at.length() < 20.0), "{name}: {positions:?}");
         }
@@ -313,7 +313,7 @@ fn faces_listed_by_hand_are_inside_where_two_elements_hold_them() {
         "nodes = {nodes}\nelements = [[0,1,2,3,4,5,6,7],[4,5,6,7,8,9,10,11]]\n\
          faces = [[0,2,3,1],[4,5,7,6],[8,9,11,10],[0,1,5,4],[4,5,9,8]]"
     );
-    let faces = good(&world(&body, Dimension::Space)).bodies[0].body.faces.clone();
+    let faces = good(&world(&body, Dimension::Space)).bodies[0].body.faces().clone();
     assert_eq!(faces.inner, [Some(0), Some(0), Some(1), Some(0), Some(1)]);
     assert_eq!(faces.outer, [None, Some(1), None, None, None]);
 }
@@ -337,8 +337,8 @@ fn a_summary_counts_the_elements_of_each_kind() {
 #[test]
 fn kinds_are_those_of_the_number_of_nodes() {
     let scene = good(&world("bars = { count = 2, length = 0.1, direction = [0, 0, 2] }", Dimension::Space));
-    assert_eq!(scene.bodies[0].body.kinds, [ElementKind::Segment; 2]);
-    assert!((scene.bodies[0].body.rest[2] - DVec3::Z * 0.2).length() < 1e-16);
+    assert_eq!(scene.bodies[0].body.kinds(), [ElementKind::Segment; 2]);
+    assert!((scene.bodies[0].body.rest()[2] - DVec3::Z * 0.2).length() < 1e-16);
 }
 
 #[test]
@@ -375,8 +375,8 @@ fn bodies_may_start_without_depth_inside_out_or_at_random() {
     };
     let start = |typed: &str| {
         let scene = scene(typed);
-        let middle = scene.bodies[0].body.rest.iter().sum::<DVec3>() / scene.bodies[0].body.len() as f64;
-        let rest: Vec<_> = scene.bodies[0].body.rest.iter().map(|at| *at - middle).collect();
+        let middle = scene.bodies[0].body.rest().iter().sum::<DVec3>() / scene.bodies[0].body.len() as f64;
+        let rest: Vec<_> = scene.bodies[0].body.rest().iter().map(|at| *at - middle).collect();
         (rest, scene.runs[0].initial.position.iter().map(|at| *at - middle).collect::<Vec<_>>())
     };
     let near = |one: DVec3, other: DVec3| one.distance(other) < 1e-12;
@@ -400,7 +400,7 @@ fn bodies_may_start_without_depth_inside_out_or_at_random() {
     ));
     assert!(
         moved.runs[0].initial.position.iter().all(|at| at.y == 3.0)
-            && moved.bodies[0].body.rest == scene("{ shape = 'point' }").bodies[0].body.rest
+            && moved.bodies[0].body.rest() == scene("{ shape = 'point' }").bodies[0].body.rest()
     );
 }
 
@@ -439,7 +439,7 @@ fn a_start_says_what_is_wrong_with_it() {
 
 /// The mass of each node.
 fn masses(body: &str, dimension: Dimension) -> Vec<f64> {
-    good(&world(body, dimension)).bodies[0].body.mass.clone()
+    good(&world(body, dimension)).bodies[0].body.mass().to_vec()
 }
 
 /// The density times the volume, or the typed mass, whatever the elements are.
@@ -456,7 +456,7 @@ fn masses_add_up() {
             continue;
         }
         let scene = good(&world(&format!("{body}\ndensity = 1e3"), dimension));
-        let (rest, mass) = (&scene.bodies[0].body, &scene.bodies[0].body.mass);
+        let (rest, mass) = (&scene.bodies[0].body, scene.bodies[0].body.mass());
         let volume: f64 = volumes_at_rest(rest).iter().sum();
         assert!(mass.iter().all(|&mass| mass > 0.0), "{body}");
         let total: f64 = mass.iter().sum();

@@ -192,8 +192,8 @@ fn captions_say_what_the_scenes_are() {
                 says(format!("stiffness {},", part("k = ")));
                 says(format!("damping ratio {},", part("ζ = ")));
             }
-            assert!(scene.bodies[0].body.mass.iter().all(|&mass| mass == scene.bodies[0].body.mass[0]));
-            says(format!("{} kg per node,", scene.bodies[0].body.mass[0]));
+            assert!(scene.bodies[0].body.mass().iter().all(|&mass| mass == scene.bodies[0].body.mass()[0]));
+            says(format!("{} kg per node,", scene.bodies[0].body.mass()[0]));
             for obstacle in &scene.obstacles {
                 if obstacle.restitution > 0.0 {
                     says(format!("restitution {},", obstacle.restitution));

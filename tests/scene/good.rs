@@ -23,8 +23,8 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     let scene = Scene::load(Path::new("scenes/fig4b.toml"), &Limits::default()).unwrap();
     assert_eq!(scene.name, "fig4b");
     assert_eq!(scene.bodies[0].body.len(), 64);
-    assert_eq!(scene.bodies[0].body.kinds, [ElementKind::Hexahedron; 27]);
-    assert_eq!(scene.bodies[0].body.mass, [1.0; 64]);
+    assert_eq!(scene.bodies[0].body.kinds(), [ElementKind::Hexahedron; 27]);
+    assert_eq!(scene.bodies[0].body.mass(), [1.0; 64]);
     assert_eq!(scene.gravity, DVec3::new(0.0, -9.8, 0.0));
     assert_eq!(scene.last_frame(), 180);
     let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
@@ -124,19 +124,19 @@ fn the_block_is_turned_about_its_middle_and_set_down_on_its_lowest_node() {
     assert!((up.length() - 0.3).abs() < 1e-15);
     assert!((up.x / 0.3 + 0.02).abs() < 1e-5 && (up.z / 0.3 - 0.02).abs() < 1e-5, "{up}");
     // At rest nothing is rotated.
-    assert_eq!(scene.bodies[0].body.rest[0], DVec3::new(-1.5 * 0.1, 0.0, -1.5 * 0.1));
+    assert_eq!(scene.bodies[0].body.rest()[0], DVec3::new(-1.5 * 0.1, 0.0, -1.5 * 0.1));
 }
 
 #[test]
 fn an_explicit_body_in_the_plane_has_what_it_lists() {
     let scene = good(&format!("gravity = [0, -9.8]\n{WORLD}{TRIANGLE}"));
-    assert_eq!(scene.bodies[0].body.dimension, Dimension::Plane);
-    assert_eq!(scene.bodies[0].body.kinds, [ElementKind::Polygon]);
-    assert_eq!(scene.bodies[0].body.mass, [1.0, 2.0, 3.0]);
-    assert_eq!(scene.bodies[0].body.rest[2], DVec3::new(0.5, 0.866, 0.0));
+    assert_eq!(scene.bodies[0].body.dimension(), Dimension::Plane);
+    assert_eq!(scene.bodies[0].body.kinds(), [ElementKind::Polygon]);
+    assert_eq!(scene.bodies[0].body.mass(), [1.0, 2.0, 3.0]);
+    assert_eq!(scene.bodies[0].body.rest()[2], DVec3::new(0.5, 0.866, 0.0));
     assert_eq!(scene.runs[0].initial.position[2], DVec3::new(0.1, 0.1, 0.0));
     assert_eq!(scene.runs[0].initial.velocity[2], DVec3::new(0.0, 1.0, 0.0));
-    assert_eq!(scene.bodies[0].body.faces.inner, [Some(0)]);
+    assert_eq!(scene.bodies[0].body.faces().inner, [Some(0)]);
     assert_eq!((scene.view.camera.azimuth, scene.view.camera.elevation), (0.0, 0.0));
 }
 
@@ -147,7 +147,7 @@ fn in_the_plane_a_turn_needs_no_axis() {
     let edge = scene.runs[0].initial.position[1] - scene.runs[0].initial.position[0];
     assert!(edge.distance(2.0 * DVec3::new(libm::cos(0.5), libm::sin(0.5), 0.0)) < 1e-15, "{edge}");
     assert!(scene.runs[0].initial.position.iter().all(|point| point.z == 0.0));
-    assert_eq!(scene.bodies[0].body.kinds, [ElementKind::Polygon]);
+    assert_eq!(scene.bodies[0].body.kinds(), [ElementKind::Polygon]);
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn what_is_not_said_has_its_documented_default() {
         good(&format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[[obstacle]]\nkind = 'floor'"));
     assert_eq!((scene.title.as_str(), scene.name.as_str()), ("test", "test"));
     assert_eq!((scene.gravity, scene.frames_per_second), (DVec3::ZERO, 60.0));
-    assert_eq!(scene.bodies[0].body.mass, [1.0; 8]);
+    assert_eq!(scene.bodies[0].body.mass(), [1.0; 8]);
     assert!(scene.runs[0].initial.velocity.iter().all(|&velocity| velocity == DVec3::ZERO));
     let obstacle = &scene.obstacles[0];
     assert_eq!((obstacle.restitution, obstacle.friction), (0.0, 0.0));

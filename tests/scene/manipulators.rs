@@ -140,9 +140,9 @@ fn convex_elements_may_list_their_nodes_in_any_order() {
         "[body]\nnodes = [[1,0,0],[0,-1,0],[0,0,1],[-1,0,0],[0,1,0],[0,0,-1]]\nelements = [[0,1,2,3,4,5]]\n";
     let scene = good(&format!("{head}{octahedron}convex = true"));
     assert!(description(scene.runs[0].models[0].as_ref(), &scene.bodies[0].body).starts_with("12 springs"));
-    assert_eq!(scene.bodies[0].body.faces.nodes.len(), 8);
+    assert_eq!(scene.bodies[0].body.faces().nodes.len(), 8);
     let cloth = "[body]\nnodes = [[0,0,0],[1,0,0],[1,1,0],[0,1,0]]\nelements = [[0,1,2,3]]\n";
-    assert_eq!(good(&format!("{head}{cloth}convex = true")).bodies[0].body.faces.nodes.len(), 1);
+    assert_eq!(good(&format!("{head}{cloth}convex = true")).bodies[0].body.faces().nodes.len(), 1);
     let error = bad(&format!("{head}{cloth}")).to_string();
     assert!(error.contains("no volume: its nodes are in a plane, or not in their order"), "{error}");
     assert!(error.contains("write convex = true in [body]"), "{error}");

@@ -96,21 +96,21 @@ fn a_surface_is_filled_and_carried() {
     let cube = [("cube.obj", CUBE)];
     let scene = loaded(&with("cube.obj", "fill.cells = 2"), &cube);
     let body = &scene.bodies[0].body;
-    assert_eq!((body.len(), body.elements.len(), &body.fill), (27, 8, &None));
-    assert!((body.mass.iter().sum::<f64>() - 1000.0).abs() < 1e-9);
-    let carried = body.carried.as_ref().unwrap();
-    assert_eq!(carried.positions(&body.rest).len(), carried.rest.len());
+    assert_eq!((body.len(), body.elements().len(), &body.fill()), (27, 8, &None));
+    assert!((body.mass().iter().sum::<f64>() - 1000.0).abs() < 1e-9);
+    let carried = body.carried().unwrap();
+    assert_eq!(carried.positions(body.rest()).len(), carried.rest.len());
     assert_eq!(scene.warnings, []);
     // By default some 20 cells lie along the longest side.
-    let elements = |lines: &str| loaded(&with("cube.obj", lines), &cube).bodies[0].body.elements.len();
+    let elements = |lines: &str| loaded(&with("cube.obj", lines), &cube).bodies[0].body.elements().len();
     assert_eq!(elements(""), 8000);
     assert_eq!(elements("fill.side = 0.5"), 8);
     assert_eq!(elements("scale = 0.001\nfill.side = 0.0005"), 8);
     // A cube that is cut has a part of the mass of all cubes, in proportion to its filling.
     let scene = loaded(&with("cube.obj", "fill.side = 0.4"), &cube);
     let body = &scene.bodies[0].body;
-    assert!((body.mass.iter().sum::<f64>() - 1000.0).abs() < 1e-9);
-    assert_eq!(body.fill.as_ref().map(Vec::len), Some(27));
+    assert!((body.mass().iter().sum::<f64>() - 1000.0).abs() < 1e-9);
+    assert_eq!(body.fill().map(<[f64]>::len), Some(27));
 }
 
 #[test]
@@ -139,10 +139,10 @@ fn cells_become_elements_and_groups_are_named() {
         let scene = with("brick.msh", "") + &format!("[[hold]]\nnodes = '{nodes}'\n");
         let scene = loaded(&scene, &[("brick.msh", BRICK)]);
         let body = &scene.bodies[0].body;
-        assert_eq!((body.len(), body.elements.len(), body.mass.iter().sum::<f64>()), (8, 1, 2000.0));
-        assert!(body.carried.is_none() && body.fill.is_none());
+        assert_eq!((body.len(), body.elements().len(), body.mass().iter().sum::<f64>()), (8, 1, 2000.0));
+        assert!(body.carried().is_none() && body.fill().is_none());
         let grips = &scene.runs[0].grips;
-        let mut at: Vec<_> = grips[0].nodes.iter().map(|&node| body.rest[node as usize].x).collect();
+        let mut at: Vec<_> = grips[0].nodes.iter().map(|&node| body.rest()[node as usize].x).collect();
         at.dedup();
         (grips[0].nodes.len(), at)
     };
@@ -186,7 +186,7 @@ $Elements\n4\n1 2 2 1 1 1 3 2\n2 2 2 0 1 1 2 4\n3 2 2 0 1 1 4 3\n4 2 2 0 1 2 3 4
         let held = |nodes: &str| {
             let scene = loaded(&scene(nodes), &[("foot.msh", surface)]);
             let body = scene.bodies[0].body.clone();
-            scene.runs[0].grips[0].nodes.iter().map(|&node| body.rest[node as usize]).collect::<Vec<_>>()
+            scene.runs[0].grips[0].nodes.iter().map(|&node| body.rest()[node as usize]).collect::<Vec<_>>()
         };
         // The face at z = 0 is all of the group, with the points between its corners: 15 of them, at distances of a quarter.
         let foot = held("foot");
@@ -222,7 +222,7 @@ fn a_filled_body_needs_its_density_or_its_whole_mass() {
     wrong(&many("fill = { with = 'tetrahedra', cells = 150 }"), cube, &["needs about 40 million", "use cells = "]);
     wrong(&many("fill = { side = 0.001 }"), cube, &["use side = 0.0051 or more, or allow more with --allow-large"]);
     let whole = loaded(&scene.replace("KEY", "mass_total = 3"), &[("cube.obj", CUBE)]);
-    assert!((whole.bodies[0].body.mass.iter().sum::<f64>() - 3.0).abs() < 1e-12);
+    assert!((whole.bodies[0].body.mass().iter().sum::<f64>() - 3.0).abs() < 1e-12);
 }
 
 #[test]
@@ -281,7 +281,7 @@ fn pieces_have_their_own_mass_and_shells_that_cross_that_of_their_union() {
             let body = &scene.bodies[0].body;
             // The first cube carries the first points of the surface.
             let mut masses = [0.0; 2];
-            let first = body.elements.iter().flat_map(|nodes| nodes.iter().map(|&node| [nodes[0], node]));
+            let first = body.elements().iter().flat_map(|nodes| nodes.iter().map(|&node| [nodes[0], node]));
             let mut leads: Vec<u32> = (0..body.len() as u32).collect();
             for _ in 0..64 {
                 for [one, other] in first.clone() {
@@ -289,7 +289,7 @@ fn pieces_have_their_own_mass_and_shells_that_cross_that_of_their_union() {
                     (leads[one as usize], leads[other as usize]) = (least, least);
                 }
             }
-            leads.iter().zip(&body.mass).for_each(|(&lead, mass)| masses[usize::from(lead > 0)] += mass);
+            leads.iter().zip(body.mass()).for_each(|(&lead, &mass)| masses[usize::from(lead > 0)] += mass);
             masses
         };
         // At a distance of a quarter of a cell.
@@ -374,7 +374,7 @@ fn points_are_welded_within_a_distance_in_metres() {
             && messages(&apart).contains("write weld = 1e-10 (m)")
     );
     let joined = scene("weld = 1e-10", "c.vtu");
-    assert_eq!((joined.bodies[0].body.len(), joined.bodies[0].body.elements.len()), (8, 6));
+    assert_eq!((joined.bodies[0].body.len(), joined.bodies[0].body.elements().len()), (8, 6));
     assert_eq!(messages(&joined), "`c.vtu` is mended: 16 points welded, nearer than weld = 1e-10 m to others \n");
     assert_ne!(apart.digest, joined.digest);
 }
@@ -386,7 +386,7 @@ fn groups_of_obj_files_are_named() {
         let scene = with("a.obj", "fill.cells = 6") + &format!("[[hold]]\nnodes = '{nodes}'\n");
         let scene = load(&scene, &files).unwrap();
         let body = &scene.bodies[0].body;
-        scene.runs[0].grips[0].nodes.iter().map(|&node| body.rest[node as usize].y).collect::<Vec<_>>()
+        scene.runs[0].grips[0].nodes.iter().map(|&node| body.rest()[node as usize].y).collect::<Vec<_>>()
     };
     // A box of 2 × 1 × 3 m with cubes of half a metre.
     assert_eq!(held("cap"), [1.0; 35]);
@@ -400,7 +400,7 @@ fn points_without_coordinates_are_told() {
     for name in ["unknown-point.obj", "unknown-point.ply", "unknown-point-binary.ply"] {
         let scene = load(&with(name, "fill.cells = 6"), &[(name, &field(name))]).unwrap();
         assert_eq!(messages(&scene), format!("`{name}` has a point without coordinates, which is left out \n"));
-        assert!((scene.bodies[0].body.mass.iter().sum::<f64>() - 6000.0).abs() < 1e-9);
+        assert!((scene.bodies[0].body.mass().iter().sum::<f64>() - 6000.0).abs() < 1e-9);
     }
 }
 
@@ -419,7 +419,7 @@ fn data_of_a_gltf_file_is_beside_it() {
     let scene = with("a.gltf", "fill.cells = 6");
     let read = |height: f32| load(&scene, &[("a.gltf", gltf.as_bytes()), ("my box.bin", &data(height))]).unwrap();
     let (low, high) = (read(1.0), read(3.0));
-    let mass = |scene: &Scene| scene.bodies[0].body.mass.iter().sum::<f64>();
+    let mass = |scene: &Scene| scene.bodies[0].body.mass().iter().sum::<f64>();
     assert!((mass(&low) - 1000.0 / 6.0).abs() < 1e-9 && (mass(&high) - 500.0).abs() < 1e-9);
     assert_ne!(low.digest, high.digest, "the data is a part of the scene");
     let mut only = vec![("a.gltf", gltf.as_bytes())];
@@ -437,7 +437,7 @@ fn what_is_left_out_of_cells_is_told() {
     let scene = loaded(&with("flat.vtk", ""), &[("flat.vtk", flat)]);
     let expected = "`flat.vtk` has a cell without volume, which is left out: it has corners at [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0] \n";
     assert_eq!(messages(&scene), expected);
-    assert_eq!((scene.bodies[0].body.len(), scene.bodies[0].body.elements.len()), (4, 1));
+    assert_eq!((scene.bodies[0].body.len(), scene.bodies[0].body.elements().len()), (4, 1));
     let scene = load(&with("kinds.inp", ""), &[("kinds.inp", &field("kinds.inp"))]).unwrap();
     let notes = messages(&scene);
     assert!(notes.starts_with("`kinds.inp` has elements that are not read: 2 of the type SPRINGA \n"), "{notes}");

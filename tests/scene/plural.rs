@@ -69,7 +69,9 @@ fn runs_have_the_bodies_and_models_that_they_name() {
     let of: Vec<_> = scene.runs.iter().map(|run| run.of.clone()).collect();
     assert_eq!(of, [vec![0, 1], vec![0, 1], vec![0], vec![1]]);
     assert!(Arc::ptr_eq(&scene.runs[0].bodies, &scene.runs[1].bodies), "runs of the same bodies share them");
-    let stiffness = |run: usize| scene.runs[run].models.iter().map(|model| model.stiffness()).collect::<Vec<_>>();
+    let stiffness = |run: usize| {
+        scene.runs[run].models_and_bodies().map(|(model, body)| model.properties(body).stiffness).collect::<Vec<_>>()
+    };
     assert_eq!([0, 1, 2, 3].map(stiffness), [vec![1e4, 1e4], vec![1e4, 2e4], vec![1e4], vec![2e4]]);
     assert_eq!(scene.runs[0].initial.position.len(), 27 + 12);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);

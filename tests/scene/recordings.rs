@@ -91,7 +91,7 @@ fn own_bodies_and_those_of_the_scene() {
     let (_folder, scene) = load(SCENE, &stored(&other.concat()));
     let scene = scene.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((scene.bodies.len(), &scene.runs[0].of[..], scene.bodies[1].name.as_str()), (2, &[1][..], "Played"));
-    assert_eq!((scene.runs[0].body().elements.len(), scene.runs[0].body().mass[0]), (1, 2.0));
+    assert_eq!((scene.runs[0].body().elements().len(), scene.runs[0].body().mass()[0]), (1, 2.0));
     let frame = Runner::new(&scene, &[0]).frame(60);
     assert_eq!(frame.runs[0].snapshot.position[1], DVec3::new(1.0 + 5.0_f64.sin(), 0.0, 0.0));
 }
@@ -351,7 +351,7 @@ fn recordings_are_put_upright_in_metres() {
         let scene = scene.unwrap_or_else(|error| panic!("{error}"));
         let mut world = scene.world(0);
         world.advance_towards(Moment::at(1.0), u64::MAX);
-        (scene.runs[0].body().rest.clone(), world.state().position.clone(), world.state().velocity[0], scene.digest)
+        (scene.runs[0].body().rest().to_vec(), world.state().position.clone(), world.state().velocity[0], scene.digest)
     };
     let (rest, position, velocity, digest) = shown(", up = 'z', scale = 0.001");
     assert_eq!(rest, [[0.0; 3], [0.003, 0.0, 0.0], [0.0, 0.0, -0.002], [0.0, 0.001, 0.0]].map(DVec3::from));
@@ -474,9 +474,9 @@ fn a_moment_has_the_elements_of_the_same_file_as_a_mesh() {
         let alone = of_sequence(&files, "cells_*.vtu");
         assert_eq!(alone.runs[0].of, [1], "a body of its own");
         let own = alone.runs[0].body();
-        assert_eq!((&own.rest, &own.elements, &own.kinds), (&mesh.rest, &mesh.elements, &mesh.kinds));
+        assert_eq!((own.rest(), own.elements(), own.kinds()), (mesh.rest(), mesh.elements(), mesh.kinds()));
         for scene in [&with_mesh, &alone] {
-            assert_eq!(scene.world(0).state().position, mesh.rest);
+            assert_eq!(scene.world(0).state().position, mesh.rest());
             let is_turned = |message: &str| message.contains("turned inside out, and are turned over");
             assert_eq!(scene.warnings.iter().filter(|one| is_turned(&one.message)).count(), warnings);
         }
@@ -526,7 +526,7 @@ fn files_of_one_time_are_bodies_of_a_moment_or_the_same_state() {
     let sound = |sets: &[(f64, &str, &str)]| load(sets).unwrap_or_else(|error| panic!("{error}"));
     for parts in [["", ""], ["part='0'", "part='1'"]] {
         let scene = sound(&[(0.0, "a.vtu", parts[0]), (0.0, "b.vtu", parts[1])]);
-        assert_eq!((scene.runs[0].body().len(), scene.runs[0].body().elements.len()), (8, 2));
+        assert_eq!((scene.runs[0].body().len(), scene.runs[0].body().elements().len()), (8, 2));
         assert_eq!(scene.runs[0].recording.as_ref().unwrap().moments(), 1);
     }
     // Frames nearer than a time step.
@@ -607,7 +607,7 @@ fn surfaces_of_every_format_and_negative_numbers_are_sequences() {
         let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
         let scene = of_sequence(&files, &format!("f*.{format}"));
         assert_eq!(course(&scene, 5), [-2.0, -1.0, 0.0, 1.0, 2.0], "{format}");
-        assert_eq!(scene.runs[0].body().elements.len(), 4, "{format}");
+        assert_eq!(scene.runs[0].body().elements().len(), 4, "{format}");
         assert!(scene.warnings.is_empty());
         // Without a zero in between, a hyphen stands before the numbers of another sequence.
         let two: Vec<_> = files.iter().filter(|(name, _)| !name.contains('0')).copied().collect();
@@ -645,7 +645,7 @@ fn sequences_of_cells_of_medit_and_abaqus_are_bodies_of_cells() {
         let names = [0, 1].map(|at| format!("m{at}.{ending}"));
         let files = [(names[0].as_str(), first.as_bytes()), (names[1].as_str(), second.as_bytes())];
         let scene = of_sequence(&files, &format!("m*.{ending}"));
-        let elements = &scene.runs[0].body().elements;
+        let elements = &scene.runs[0].body().elements();
         assert_eq!((elements.len(), elements[0].len(), course(&scene, 2)), (1, 4, vec![0.0, 1.0]), "{ending}");
     }
 }
@@ -689,7 +689,7 @@ fn displacements_of_points_at_rest_are_added_and_told() {
     {
         let scene = of(name, components);
         assert_eq!(course(&scene, 3), [0.0, 0.5, 1.0], "{name}");
-        assert_eq!(scene.runs[0].body().rest[0], DVec3::ZERO, "the shape at rest");
+        assert_eq!(scene.runs[0].body().rest()[0], DVec3::ZERO, "the shape at rest");
         let told = "`m*.vtu` has points that do not move, to which their array `displacement` or `U` is added";
         assert_eq!(warnings(&scene), told);
     }
@@ -748,7 +748,7 @@ fn lists_of_other_programs_are_read() {
     let windows = load("l.pvd", &list(&[(0.0, ".\\a.vtu", ""), (0.1, ".\\b.vtu", "")]));
     assert_eq!(course(&windows, 2), [0.0, 1.0]);
     let pieces = load("l.pvd", &list(&[(0.0, "two.pvtu", ""), (0.1, "two.pvtu", "")]));
-    assert_eq!((pieces.runs[0].body().len(), pieces.runs[0].body().elements.len()), (8, 2));
+    assert_eq!((pieces.runs[0].body().len(), pieces.runs[0].body().elements().len()), (8, 2));
     let series = r#"{ "file-series-version": "1.0", "files": [{ "name": "a.vtu", "time": 0 }, { "name": "c.vtu", "time": 0.2 }] }"#;
     assert_eq!(course(&load("l.vtu.series", series.as_bytes()), 3), [0.0, 1.0, 2.0]);
 }

@@ -7,7 +7,7 @@ use crate::Surface;
 use crate::edges::Sets;
 use glam::DVec3;
 use localshape_sim::geometry::node_volumes;
-use localshape_sim::{Body, Dimension, Solids};
+use localshape_sim::{Body, Solids};
 use rayon::prelude::*;
 
 /// Fills each part of a surface by itself, so that no element reaches from one into another.
@@ -73,8 +73,8 @@ pub(super) fn fill(
 fn volumes(part: &Filled) -> Vec<f64> {
     let Cage { nodes, elements, filled, convex, overlap, .. } = &part.cage;
     let solids = if *convex { Solids::Convex } else { Solids::Ordered };
-    let mut body = Body::new(Dimension::Space, nodes.clone(), vec![1.0; nodes.len()], elements.clone(), solids, None);
-    body.fill.clone_from(filled);
+    let body = Body::builder(nodes.clone()).elements(elements.clone()).solids(solids).fill(filled.clone()).build();
+    let body = body.expect("a cage has sound elements");
     let (mut volumes, measures) = (node_volumes(&body), part.surface.measures());
     if measures.closed {
         let found: f64 = volumes.iter().sum();

@@ -11,7 +11,7 @@ use crate::edges::Sets;
 use crate::{Cage, FillError, Flaws, Surface};
 use glam::{DMat3, DVec3, I64Vec3};
 use localshape_sim::geometry::{around, bounds};
-use localshape_sim::{Body, Dimension, ElementKind, IndexLists, Solids, Weights};
+use localshape_sim::{Body, ElementKind, IndexLists, Solids, Weights};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -132,11 +132,12 @@ pub(super) fn carry(
 /// No number.
 const NONE: u32 = u32::MAX;
 
-/// The elements of a cage with their faces.
+/// The elements of a cage with their faces. Where the first try has found none, it is one node.
 pub(super) fn body(cage: &Cage) -> Body {
     let solids = if cage.convex { Solids::Convex } else { Solids::Ordered };
-    let mass = vec![1.0; cage.nodes.len()];
-    Body::new(Dimension::Space, cage.nodes.clone(), mass, cage.elements.clone(), solids, None)
+    let nodes = if cage.nodes.is_empty() { vec![DVec3::ZERO] } else { cage.nodes.clone() };
+    let body = Body::builder(nodes).elements(cage.elements.clone()).solids(solids).build();
+    body.expect("a cage has sound elements")
 }
 
 /// The piece of the surface to which each point belongs, and how many there are.
@@ -159,8 +160,8 @@ struct Hung {
 
 impl Hung {
     fn new(body: &Body, pieces: &[u32], found: &[Option<Place>]) -> Self {
-        let mut sets = Sets::new(body.elements.len());
-        for sides in body.faces.inner.iter().zip(&body.faces.outer) {
+        let mut sets = Sets::new(body.elements().len());
+        for sides in body.faces().inner.iter().zip(&body.faces().outer) {
             if let (Some(one), Some(other)) = sides {
                 sets.join(*one, *other);
             }
@@ -255,22 +256,22 @@ struct Fan {
 impl Fan {
     fn new(body: &Body) -> Self {
         let mut fan = Self {
-            points: body.rest.clone(),
+            points: body.rest().to_vec(),
             means: IndexLists::default(),
-            nodes: body.rest.len(),
+            nodes: body.rest().len(),
             simplices: Vec::new(),
             starts: Vec::new(),
             outside: Vec::new(),
         };
-        let is_simple = |element: u32| body.kinds[element as usize] == ElementKind::Tetrahedron;
-        let mut middles = vec![u32::MAX; body.elements.len()];
-        for (element, nodes) in (0u32..).zip(body.elements.iter()) {
+        let is_simple = |element: u32| body.kinds()[element as usize] == ElementKind::Tetrahedron;
+        let mut middles = vec![u32::MAX; body.elements().len()];
+        for (element, nodes) in (0u32..).zip(body.elements().iter()) {
             match *nodes {
                 [a, b, c, d] if is_simple(element) => fan.simplices.push(Simplex { element, corners: [a, b, c, d] }),
                 _ => middles[element as usize] = fan.mean(nodes),
             }
         }
-        for (face, nodes) in body.faces.nodes.iter().enumerate() {
+        for (face, nodes) in body.faces().nodes.iter().enumerate() {
             let mut triangles = Vec::new();
             if let [a, b, c] = *nodes {
                 triangles.push([a, b, c]);
@@ -278,10 +279,10 @@ impl Fan {
                 let mean = fan.mean(nodes);
                 triangles.extend(around(nodes).map(|[a, b]| [mean, a, b]));
             }
-            let sides = [body.faces.inner[face], body.faces.outer[face]];
+            let sides = [body.faces().inner[face], body.faces().outer[face]];
             for element in sides.into_iter().flatten() {
                 let opposite = match is_simple(element) {
-                    true => body.elements[element as usize].iter().copied().find(|node| !nodes.contains(node)),
+                    true => body.elements()[element as usize].iter().copied().find(|node| !nodes.contains(node)),
                     false => Some(middles[element as usize]),
                 };
                 let Some(opposite) = opposite else { continue };
@@ -296,7 +297,7 @@ impl Fan {
         }
         fan.simplices.sort_by_key(|simplex| simplex.element);
         fan.outside.sort_by_key(|simplex| simplex.element);
-        let count = body.elements.len() as u32;
+        let count = body.elements().len() as u32;
         fan.starts = (0..=count).map(|at| fan.simplices.partition_point(|of| of.element < at)).collect();
         fan
     }
@@ -632,7 +633,7 @@ mod tests {
     fn weights_are_continuous_across_faces() {
         let body = body(&cage());
         let fan = Fan::new(&body);
-        let shared: Vec<_> = (0..body.faces.nodes.len()).filter(|&face| body.faces.outer[face].is_some()).collect();
+        let shared: Vec<_> = (0..body.faces().nodes.len()).filter(|&face| body.faces().outer[face].is_some()).collect();
         assert_eq!(shared.len(), 2);
         let mut compared = 0;
         for one in &fan.simplices {

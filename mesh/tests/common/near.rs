@@ -123,20 +123,20 @@ fn reaches_behind(corners: &[DVec3], planes: &[(DVec3, f64)], slack: f64) -> boo
 pub fn outside(filled: &Filled, body: &Body, side: f64) -> Outside {
     let near = Near::new(&filled.surface, side);
     let mut found = Outside::default();
-    for &node in &body.rest {
+    for &node in body.rest() {
         if !near.is_inside(node + side * 1e-7 * DVec3::new(0.13, 0.37, 0.61)) {
             let distance = near.distance(node) / side;
             found.farthest = found.farthest.max(distance);
             found.far += usize::from(distance > 0.125 + 1e-6);
         }
     }
-    let mut planes = vec![Vec::new(); body.elements.len()];
-    for (face, nodes) in body.faces.nodes.iter().enumerate() {
-        let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
+    let mut planes = vec![Vec::new(); body.elements().len()];
+    for (face, nodes) in body.faces().nodes.iter().enumerate() {
+        let corners: Vec<_> = nodes.iter().map(|&node| body.rest()[node as usize]).collect();
         let area =
             (1..corners.len()).map(|at| (corners[at - 1] - corners[0]).cross(corners[at] - corners[0])).sum::<DVec3>();
         let normal = area.normalize();
-        let sides = [(body.faces.inner[face], normal), (body.faces.outer[face], -normal)];
+        let sides = [(body.faces().inner[face], normal), (body.faces().outer[face], -normal)];
         for (element, normal) in sides {
             if let Some(element) = element {
                 planes[element as usize].push((normal, corners[0].dot(normal)));
@@ -144,7 +144,7 @@ pub fn outside(filled: &Filled, body: &Body, side: f64) -> Outside {
         }
     }
     for (element, planes) in planes.iter().enumerate() {
-        let corners: Vec<_> = body.elements[element].iter().map(|&node| body.rest[node as usize]).collect();
+        let corners: Vec<_> = body.elements()[element].iter().map(|&node| body.rest()[node as usize]).collect();
         let (low, high) = localshape_sim::geometry::bounds(&corners);
         let mean = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let passes = |triangle: u32| reaches_behind(&near.corners(triangle), planes, 1e-6 * side);

@@ -12,8 +12,6 @@ use super::motion::{Interval, Motion, Pose};
 use super::part::Part;
 use super::state::Nodes;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// A rigid obstacle that nodes collide with.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +31,9 @@ pub struct Obstacle {
 }
 
 /// The motion that friction acts on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum FrictionOf {
     /// The velocity after the step, as in the paper. The displacement in the step remains: a body that rests on a slope
     /// creeps down with any friction.

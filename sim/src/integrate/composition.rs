@@ -73,7 +73,7 @@ impl ByComposition {
                 break;
             }
             step.place_held(composition.share(at), next);
-            step.evaluate(next.nodes(), &next.memory.model, evaluation);
+            step.evaluate(composition.share(at), next.nodes(), &next.memory.model, evaluation);
             next.memory.model.copy_from_slice(&evaluation.memory);
             let kick = composition.kick(at) * time;
             for (velocity, &acceleration) in next.velocity.iter_mut().zip(&evaluation.acceleration) {
@@ -87,6 +87,10 @@ impl Method for ByComposition {
     fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
         self.fly(step, state, next);
         step.finish(state, next)
+    }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::new(Self::new(self.composition))
     }
 }
 

@@ -63,6 +63,10 @@ impl Method for DormandPrince {
         self.now = now;
         result
     }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::new(Self::new(self.scales, self.tolerance))
+    }
 }
 
 impl DormandPrince {
@@ -123,7 +127,7 @@ impl DormandPrince {
             Some((&wish, [])) => (wish, None),
             // Accelerations of held nodes are not kept.
             Some((&wish, known)) if known.len() == accelerations => {
-                (wish, step.system.grips.is_empty().then(|| bytemuck::cast_slice(known)))
+                (wish, step.system.surroundings.grips.is_empty().then(|| bytemuck::cast_slice(known)))
             }
             // Anything else is the memory of another method.
             _ => (0.1 * self.scales.time, None),
@@ -152,7 +156,7 @@ impl DormandPrince {
             match known.filter(|_| stage == 0) {
                 Some(known) => accelerations.copy_from_slice(known),
                 None => {
-                    part.evaluate(next.nodes(), &next.memory.model, &mut self.evaluation);
+                    part.evaluate(SHARES[stage], next.nodes(), &next.memory.model, &mut self.evaluation);
                     accelerations.copy_from_slice(&self.evaluation.acceleration);
                     next.memory.model.copy_from_slice(&self.evaluation.memory);
                 }

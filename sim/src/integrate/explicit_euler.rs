@@ -18,4 +18,8 @@ impl Method for ExplicitEuler {
         step.constrain(state, next, None);
         Ok(())
     }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::<Self>::default()
+    }
 }

@@ -19,7 +19,6 @@ use self::runge_kutta::RungeKutta;
 use self::semi_implicit_euler::SemiImplicitEuler;
 use self::velocity_verlet::VelocityVerlet;
 use super::body::Body;
-use super::crew::Crew;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::model::{ElasticModel, Scratch};
 pub use super::motion::Interval;
@@ -28,13 +27,12 @@ pub use super::state::Runaway;
 use super::state::{Nodes, State};
 use super::system::System;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The integrator, which advances positions and velocities by a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum Integrator {
     /// Eq. (2), then Eq. (3) with the new velocity: symplectic, of first order.
     #[default]
@@ -124,8 +122,8 @@ impl Integrator {
 ///         let time = step.interval().step;
 ///         next.memory.model.clone_from(&state.memory.model);
 ///         (next.position.clone_from(&state.position), next.velocity.clone_from(&state.velocity));
-///         for share in [0.5, 1.0] {
-///             step.evaluate(next.nodes(), &next.memory.model, &mut self.0);
+///         for (from, share) in [(0.0, 0.5), (0.5, 1.0)] {
+///             step.evaluate(from, next.nodes(), &next.memory.model, &mut self.0);
 ///             next.memory.model.copy_from_slice(&self.0.memory);
 ///             for (node, &acceleration) in self.0.acceleration.iter().enumerate() {
 ///                 next.position[node] = state.position[node] + next.velocity[node] * (share * time);
@@ -134,6 +132,10 @@ impl Integrator {
 ///             step.place_held(share, next);
 ///         }
 ///         step.finish(state, next)
+///     }
+///
+///     fn copy(&self) -> Box<dyn Method> {
+///         Box::<Self>::default()
 ///     }
 /// }
 /// ```
@@ -145,6 +147,9 @@ pub trait Method: Send + Sync {
     /// When a node would become too fast; see [`Step::check`].
     fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway>;
 
+    /// A copy for another world. Buffers need not be copied.
+    fn copy(&self) -> Box<dyn Method>;
+
     /// The steps up to a state whose equation an implicit method has not solved; `None` if it has solved all.
     fn unsolved(&self, state: &State) -> Option<Unsolved> {
         let _ = state;
@@ -153,7 +158,8 @@ pub trait Method: Send + Sync {
 }
 
 /// Steps whose equation an implicit method has not solved to round-off.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub struct Unsolved {
     /// Their number.
     pub steps: u64,
@@ -219,15 +225,16 @@ impl Step<'_> {
     /// Whether a kinematic constraint begins or ends to hold nodes in this step, so that the motion before does not continue.
     pub fn changes_holds(&self) -> bool {
         let Interval { begin, end, .. } = self.interval;
-        self.system.grips.iter().any(|grip| grip.moves(begin) != grip.moves(end))
+        self.system.surroundings.grips.iter().any(|grip| grip.moves(begin) != grip.moves(end))
     }
 
-    /// Evaluates the forces of models and gravity on nodes, with the memory that models had after the last evaluation.
-    pub fn evaluate(&self, at: Nodes<'_>, memory: &[f64], out: &mut Evaluation) {
+    /// Evaluates the forces of models, gravity and forces from outside on nodes after a `share` of the step, with the memory that models had
+    /// after the last evaluation.
+    pub fn evaluate(&self, share: f64, at: Nodes<'_>, memory: &[f64], out: &mut Evaluation) {
         let Evaluation { acceleration, memory: next, scratch } = out;
         acceleration.resize(at.position.len(), DVec3::ZERO);
         next.resize(memory.len(), 0.0);
-        self.system.forces(at, memory, next, scratch, acceleration);
+        self.system.forces(self.interval.after(share), at, memory, next, scratch, acceleration);
         acceleration.iter_mut().zip(&self.system.mass).for_each(|(force, &mass)| *force /= mass);
     }
 
@@ -318,7 +325,7 @@ impl Step<'_> {
     #[doc(alias = "Eq. 2")]
     fn velocities(&self, state: &State, next: &mut State, scratch: &mut Scratch) -> Result<(), Runaway> {
         let (memory, forces) = (&state.memory.model, &mut next.velocity);
-        self.system.forces(state.nodes(), memory, &mut next.memory.model, scratch, forces);
+        self.system.forces(self.interval.begin, state.nodes(), memory, &mut next.memory.model, scratch, forces);
         for ((force, &mass), &velocity) in forces.iter_mut().zip(&self.system.mass).zip(&state.velocity) {
             *force = velocity + *force / mass * self.interval.step;
         }
@@ -366,14 +373,7 @@ impl Integrator {
 }
 
 impl Dynamics for ByForces {
-    fn advance(
-        &mut self,
-        system: &System,
-        limit: &SpeedLimit,
-        state: &mut State,
-        count: u64,
-        _: &mut Crew,
-    ) -> Result<(), Runaway> {
+    fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway> {
         for _ in 0..count {
             let interval = system.interval(state.steps);
             let step = Step { system, interval, limit: limit.at(interval.end) };
@@ -387,6 +387,10 @@ impl Dynamics for ByForces {
 
     fn unsolved(&self, state: &State) -> Option<Unsolved> {
         self.method.unsolved(state)
+    }
+
+    fn copy(&self) -> Box<dyn Dynamics> {
+        Box::new(Self { method: self.method.copy(), next: self.next.clone() })
     }
 }
 

@@ -27,9 +27,9 @@ impl Method for RungeKutta {
         next.position.copy_from_slice(&state.position);
         next.velocity.copy_from_slice(&state.velocity);
         next.memory.model.copy_from_slice(&state.memory.model);
-        // The share of the step at which the stage after this one is evaluated, and the weight of this one.
-        for (share, weight) in [(0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (1.0, 1.0)] {
-            step.evaluate(next.nodes(), &next.memory.model, evaluation);
+        // The shares of the step at which this stage and the one after it are evaluated, and the weight of this one.
+        for (from, share, weight) in [(0.0, 0.5, 1.0), (0.5, 0.5, 2.0), (0.5, 1.0, 2.0), (1.0, 1.0, 1.0)] {
+            step.evaluate(from, next.nodes(), &next.memory.model, evaluation);
             next.memory.model.copy_from_slice(&evaluation.memory);
             for node in 0..nodes {
                 let (velocity, acceleration) = (next.velocity[node], evaluation.acceleration[node]);
@@ -45,5 +45,9 @@ impl Method for RungeKutta {
             next.velocity[node] = state.velocity[node] + accelerations[node] * (time / 6.0);
         }
         step.finish(state, next)
+    }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::<Self>::default()
     }
 }

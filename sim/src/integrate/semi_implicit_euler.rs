@@ -20,4 +20,8 @@ impl Method for SemiImplicitEuler {
         step.constrain(state, next, None);
         Ok(())
     }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::<Self>::default()
+    }
 }

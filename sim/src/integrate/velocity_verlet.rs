@@ -33,7 +33,7 @@ impl Method for VelocityVerlet {
             let (acceleration, model) = known.split_at(3 * nodes);
             (bytemuck::cast_slice(acceleration), model)
         } else {
-            step.evaluate(state.nodes(), &state.memory.model, at_start);
+            step.evaluate(0.0, state.nodes(), &state.memory.model, at_start);
             (&at_start.acceleration, &at_start.memory[..])
         };
         next.memory.model.copy_from_slice(model);
@@ -46,7 +46,7 @@ impl Method for VelocityVerlet {
         }
         step.check(next)?;
         step.constrain(state, next, Some(acceleration));
-        step.evaluate(next.nodes(), &next.memory.model, at_end);
+        step.evaluate(1.0, next.nodes(), &next.memory.model, at_end);
         for ((velocity, &before), &after) in next.velocity.iter_mut().zip(acceleration).zip(&at_end.acceleration) {
             *velocity += (after - before) * (0.5 * time);
         }
@@ -57,5 +57,9 @@ impl Method for VelocityVerlet {
             next.memory.integrator.extend_from_slice(&at_end.memory);
         }
         Ok(())
+    }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::<Self>::default()
     }
 }

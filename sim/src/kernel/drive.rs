@@ -12,16 +12,18 @@ use crate::law::Energy;
 use crate::model::{ElasticModel, Report, Share};
 use crate::part::Part;
 use crate::state::{Memory, Nodes, Runaway, State};
+use crate::surroundings::Surroundings;
 use crate::system::System;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Kernels that advance a simulation, one for each part.
+#[derive(Clone)]
 pub(crate) struct ByKernel {
     rollback: Rollback,
     /// Of each part.
-    energies: Vec<Box<dyn Energy>>,
+    energies: Vec<Arc<dyn Energy>>,
     /// The memory of the constraints, while the kernels have the state.
     constraints: Option<Vec<f64>>,
     /// The margin (m) by which the bounds of obstacles are enlarged.
@@ -33,10 +35,9 @@ impl ByKernel {
     pub(crate) fn compile(
         bodies: &[(Arc<Body>, &dyn ElasticModel)],
         scheme: Scheme,
-        gravity: DVec3,
         step: f64,
     ) -> Option<Vec<Compiled>> {
-        let conditions = Conditions { scheme, gravity, step, set: Set::best() };
+        let conditions = Conditions { scheme, step, set: Set::best() };
         let models: Option<Vec<_>> = bodies.iter().map(|(_, model)| model.vectorised()).collect();
         Some(models?.into_iter().zip(bodies).map(|(model, (body, _))| model.compile(body, &conditions)).collect())
     }
@@ -47,7 +48,7 @@ impl ByKernel {
         /// node is on a surface, so this suffices for bodies that are nearer than a billion times their size.
         const MARGIN: f64 = 1e-3;
         let stepped = parts.iter().zip(kernels).map(|(Part { nodes, memory, .. }, Compiled { stepper, energy })| {
-            (PartStepper { stepper, nodes: nodes.clone(), memory: memory.clone() }, energy)
+            (PartStepper { stepper, nodes: nodes.clone(), memory: memory.clone() }, Arc::from(energy))
         });
         let (steppers, energies) = stepped.unzip();
         let margin = parts.iter().fold(0.0, |most: f64, part| most.max(MARGIN * part.body.extent()));
@@ -56,14 +57,7 @@ impl ByKernel {
 }
 
 impl Dynamics for ByKernel {
-    fn advance(
-        &mut self,
-        system: &System,
-        limit: &SpeedLimit,
-        state: &mut State,
-        count: u64,
-        crew: &mut Crew,
-    ) -> Result<(), Runaway> {
+    fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway> {
         /// Steps for which moving obstacles are placed at a time.
         const STRETCH: u64 = 256;
         let Self { rollback, constraints, margin, .. } = self;
@@ -71,8 +65,8 @@ impl Dynamics for ByKernel {
             rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
-        let obstacles = &system.obstacles[..];
-        let spans: Vec<_> = system.grips.iter().map(Grip::span).collect();
+        let Surroundings { gravity, obstacles, grips, forces, loads } = &system.surroundings;
+        let spans: Vec<_> = grips.iter().map(Grip::span).collect();
         let is_still = obstacles.iter().all(Obstacle::is_still);
         let target = rollback.steps() + count;
         while rollback.steps() < target {
@@ -91,7 +85,7 @@ impl Dynamics for ByKernel {
                 rollback.arrive();
             }
             // Moving obstacles are placed in advance, for this many steps at a time.
-            let until = match is_still && system.grips.is_empty() {
+            let until = match is_still && grips.is_empty() {
                 true => target,
                 false => {
                     let last = target.min(begin + STRETCH);
@@ -102,7 +96,7 @@ impl Dynamics for ByKernel {
             let end = system.interval(begin).end;
             let overlap = |span: &Range<usize>, nodes: &Range<usize>| span.start < nodes.end && nodes.start < span.end;
             let hold = |nodes: &Range<usize>| {
-                system.grips.iter().zip(&spans).any(|(grip, span)| grip.moves(end) && overlap(span, nodes))
+                grips.iter().zip(&spans).any(|(grip, span)| grip.moves(end) && overlap(span, nodes))
             };
             let place = |nodes: &Range<usize>, step: u64, share: f64, place: &mut PlaceNode<'_>| {
                 let own = system.grips(memory).zip(&spans).filter(|(_, span)| overlap(span, nodes));
@@ -115,7 +109,14 @@ impl Dynamics for ByKernel {
             let meet = |step: u64, before: Nodes<'_>, position: &mut [DVec3], velocity: &mut [DVec3]| {
                 system.meet(system.interval(step), memory, before, position, velocity);
             };
+            let push = |step: u64, share: f64, position: &[DVec3], forces: &mut [DVec3]| {
+                forces.fill(DVec3::ZERO);
+                system.surroundings.push(system.interval(step).after(share), position, forces);
+            };
             let around = Around {
+                gravity: *gravity,
+                forces,
+                push: if loads.is_empty() { None } else { Some(&push) },
                 bounds: &met.bounds,
                 row: &|step| met.row(step),
                 resolve: &|step, position, velocity, acceleration| {
@@ -129,7 +130,7 @@ impl Dynamics for ByKernel {
                 meet: if system.contact.is_empty() { None } else { Some(&meet) },
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
-            let outcome = rollback.advance(until, &around, crew);
+            let outcome = rollback.advance(until, &around, &system.crew);
             if let Some(taken) = taken.filter(|_| rollback.steps() > begin) {
                 *constraints = taken;
             }
@@ -156,6 +157,10 @@ impl Dynamics for ByKernel {
 
     fn steps(&self, state: &State) -> u64 {
         self.constraints.as_ref().map_or(state.steps, |_| self.rollback.steps())
+    }
+
+    fn copy(&self) -> Box<dyn Dynamics> {
+        Box::new(self.clone())
     }
 
     fn restart(&mut self) {

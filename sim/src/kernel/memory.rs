@@ -16,6 +16,15 @@ struct Line([f64; Aligned::LINE]);
 // SAFETY: through a shared reference only a pointer can be obtained, and using that is unsafe.
 unsafe impl Sync for Aligned {}
 
+/// Threads write through pointers while a kernel runs, which takes it uniquely. Copies are made between its runs.
+impl Clone for Aligned {
+    fn clone(&self) -> Self {
+        // SAFETY: no thread writes between runs.
+        let line = |line: &UnsafeCell<Line>| UnsafeCell::new(unsafe { *line.get() });
+        Self { lines: self.lines.iter().map(line).collect() }
+    }
+}
+
 impl Aligned {
     /// Doubles in a cache line.
     pub(crate) const LINE: usize = 8;

@@ -37,7 +37,6 @@ use std::sync::Arc;
 /// A model with vectorised steps and energies: every [`Law`], and models that choose among laws and faster code.
 pub trait Vectorised {
     /// The code for a body.
-    #[doc(hidden)]
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled;
 }
 
@@ -52,8 +51,6 @@ impl<W: Law> Vectorised for W {
 pub struct Conditions {
     /// How positions and velocities are advanced.
     pub(crate) scheme: Scheme,
-    /// Acceleration of gravity (m/s²).
-    pub(crate) gravity: DVec3,
     /// ΔT (s).
     pub(crate) step: f64,
     /// The vectors.
@@ -132,9 +129,18 @@ pub(crate) struct Held<'a> {
 /// all nodes after a step that began at the given ones.
 pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync + 'a;
 
-/// What acts on the nodes besides elements and gravity. Its functions take the number of a step.
+/// Writes the forces from outside on all nodes (N), which are at positions (m) after a share of the step of this number.
+pub(crate) type Push<'a> = dyn Fn(u64, f64, &[DVec3], &mut [DVec3]) + Sync + 'a;
+
+/// What acts on the nodes besides elements. Its functions take the number of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Around<'a> {
+    /// Acceleration of gravity (m/s²).
+    pub(crate) gravity: DVec3,
+    /// The force from outside on each node (N); empty for none.
+    pub(crate) forces: &'a [DVec3],
+    /// What makes these forces anew for each pass, if they change.
+    pub(crate) push: Option<&'a Push<'a>>,
     /// Bounds of the obstacles in all steps.
     pub(crate) bounds: &'a [Bound],
     /// The range of the bounds of a step.

@@ -35,6 +35,7 @@ const BLOCK: usize = 8;
 const ALIKE: f64 = 1e-13;
 
 /// Springs of one family.
+#[derive(Clone)]
 struct Family {
     /// The difference of the indices of the two nodes.
     offset: usize,
@@ -45,6 +46,7 @@ struct Family {
 }
 
 /// The springs of a body, in families.
+#[derive(Clone)]
 pub(crate) struct Stencil {
     set: Set,
     nodes: usize,
@@ -52,8 +54,6 @@ pub(crate) struct Stencil {
     stiffness: f64,
     /// `D` (N s/m).
     damping: f64,
-    /// Acceleration of gravity (m/s²).
-    gravity: DVec3,
     /// ΔT (s).
     step: f64,
     /// Sorted by offset, the largest first.
@@ -71,6 +71,7 @@ pub(crate) struct Stencil {
 }
 
 /// A part of the body that one thread works on.
+#[derive(Clone)]
 struct Slab {
     /// Its chunks.
     first: usize,
@@ -98,7 +99,7 @@ impl Stencil {
     ) -> Option<Self> {
         /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
         const SPARSE: usize = 2;
-        let &Conditions { gravity, step, set, .. } = conditions;
+        let &Conditions { step, set, .. } = conditions;
         let Body { rest, mass, fill: None, stiffness: None, .. } = body else { return None };
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
@@ -170,7 +171,6 @@ impl Stencil {
             nodes,
             stiffness,
             damping,
-            gravity,
             step,
             families: made,
             presence,
@@ -189,7 +189,7 @@ impl Stencil {
 
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
-    fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
         let (springs, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
         let slabs = self.slabs.len();
         let share = |me: usize| me * slabs / threads..(me + 1) * slabs / threads;
@@ -241,6 +241,10 @@ impl Stepper for Stencil {
         self.damping > 0.0
     }
 
+    fn copy(&self) -> Box<dyn Stepper> {
+        Box::new(self.clone())
+    }
+
     fn keep(&mut self) {
         self.kept.copy_from(&mut self.state);
     }
@@ -249,7 +253,7 @@ impl Stepper for Stencil {
         self.state.copy_from(&mut self.kept);
     }
 
-    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
     }
 }
@@ -293,6 +297,7 @@ impl Arrays {
                 acceleration: if stage.loads_acceleration() { self.load(ACCELERATION, at) } else { zero },
             };
             let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
+            let force = update.pushed(force, |lane| at + lane);
             let lost = update.advance(&mut nodes, force, inverse_mass);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
@@ -330,7 +335,7 @@ impl OneSlab<'_> {
         let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let slab = &springs.slabs[at];
         let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
-        let update = NodeUpdate::<L>::new(stage, springs.step, springs.gravity, number, around);
+        let update = NodeUpdate::<L>::new(stage, springs.step, number, around);
         let (k, d, one, zero) = (L::splat(springs.stiffness), L::splat(springs.damping), L::splat(1.0), L::splat(0.0));
         let all_tensions = springs.tensions.pointer().cast_const();
         let mut own = Own([[0.0; CHUNK]; 3]);
@@ -417,7 +422,7 @@ impl Work for Deferred<'_> {
     fn run<L: Lanes>(self) -> u32 {
         let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
-        let update = NodeUpdate::<L>::new(stage, springs.step, springs.gravity, number, around);
+        let update = NodeUpdate::<L>::new(stage, springs.step, number, around);
         let (arrays, zero) = (springs.arrays(), L::splat(0.0));
         let mut lost = NONE;
         let start = slab.first * CHUNK;

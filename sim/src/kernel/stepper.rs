@@ -52,8 +52,8 @@ pub(crate) struct Pass {
     pub(crate) number: u64,
     /// Whether the rotations of this pass are stored, so that the next evaluation starts from them.
     pub(crate) commit: bool,
-    /// The share of the step after which positions are at its end.
-    pub(crate) share: f64,
+    /// The shares of the step after which positions are at its start and at its end.
+    pub(crate) shares: [f64; 2],
 }
 
 /// The passes of a number of steps.
@@ -67,7 +67,7 @@ pub(crate) struct Passes {
     pub(crate) scheme: Scheme,
     /// Whether forces depend on velocities.
     pub(crate) is_damped: bool,
-    /// Whether grips or contact with other nodes act after each pass.
+    /// Whether grips, contact with other nodes or forces that change act between passes.
     pub(crate) is_interrupted: bool,
     /// The number of the first step.
     pub(crate) first: u64,
@@ -90,7 +90,7 @@ impl Passes {
     #[inline(always)]
     pub(crate) fn get(&self, pass: u64) -> Pass {
         let is_last = pass + 1 == self.len();
-        let mut share = 1.0;
+        let mut shares = [0.0, 1.0];
         let (stage, step, commit) = match self.scheme {
             Scheme::SemiImplicitEuler => (Stage::SemiImplicitEuler, pass, true),
             Scheme::ExplicitEuler => (Stage::ExplicitEuler, pass, true),
@@ -111,11 +111,14 @@ impl Passes {
                     _ if at < composition.evaluations() => Stage::Kick([composition.kick(at - 1), drift]),
                     _ => Stage::Arrive([composition.kick(at - 1), drift]),
                 };
-                share = composition.share(at);
+                shares = [at.checked_sub(1).map_or(0.0, |before| composition.share(before)), composition.share(at)];
                 (stage, step, true)
             }
         };
-        Pass { stage, number: self.first + step, commit, share }
+        if stage == Stage::Finish {
+            shares[0] = 1.0;
+        }
+        Pass { stage, number: self.first + step, commit, shares }
     }
 }
 
@@ -131,16 +134,25 @@ pub(crate) trait Stepper: Send + Sync {
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3);
     /// Whether forces depend on velocities.
     fn is_damped(&self) -> bool;
+    /// A copy with the state.
+    fn copy(&self) -> Box<dyn Stepper>;
     /// Keeps a copy of the state.
     fn keep(&mut self);
     /// Restores the state from the copy.
     fn restore(&mut self);
     /// Executes some of the passes, until a node is too fast. One thread returns the first such node, several threads any of
     /// them. The state is then undefined.
-    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost>;
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost>;
+}
+
+impl Clone for Box<dyn Stepper> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
 }
 
 /// The stepper of a part, and which nodes and which memory are its own.
+#[derive(Clone)]
 pub(crate) struct PartStepper {
     pub(crate) stepper: Box<dyn Stepper>,
     pub(crate) nodes: Range<usize>,
@@ -153,15 +165,16 @@ impl PartStepper {
         Passes {
             scheme,
             is_damped: self.stepper.is_damped(),
-            is_interrupted: is_held || around.meet.is_some(),
+            is_interrupted: is_held || around.meet.is_some() || around.push.is_some(),
             first: steps.start,
             steps: steps.end - steps.start,
         }
     }
 
     /// Executes some of the passes; see [`Stepper::run`]. Grips place nodes after each of them.
-    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let Self { stepper, nodes, .. } = self;
+        let around = &Around { forces: around.forces.get(nodes.clone()).unwrap_or_default(), ..*around };
         let lost = match around.grips.filter(|grips| (grips.hold)(nodes)) {
             None => stepper.run(passes, some, around, crew),
             Some(grips) => {
@@ -171,7 +184,7 @@ impl PartStepper {
                 let around = Around { held: &held, ..*around };
                 some.into_iter().find_map(|pass| {
                     let lost = stepper.run(passes, pass..pass + 1, &around, crew);
-                    let Pass { number, share, .. } = passes.get(pass);
+                    let Pass { number, shares: [_, share], .. } = passes.get(pass);
                     (grips.place)(nodes, number, share, &mut |node, position, velocity| {
                         stepper.set_node(node, position, velocity);
                     });
@@ -186,6 +199,7 @@ impl PartStepper {
 /// The steppers of all parts with copies of an earlier state, to which all parts go back when a node has become too fast.
 ///
 /// Until nodes of different parts meet, each part takes many steps alone, which keeps its data in the caches.
+#[derive(Clone)]
 pub(crate) struct Rollback {
     parts: Vec<PartStepper>,
     scheme: Scheme,
@@ -245,7 +259,7 @@ impl Rollback {
     ///
     /// # Errors
     /// When a node would become faster than the limit: the state of all parts is then the one before that step.
-    pub(crate) fn advance(&mut self, until: u64, around: &Around<'_>, crew: &mut Crew) -> Result<(), Runaway> {
+    pub(crate) fn advance(&mut self, until: u64, around: &Around<'_>, crew: &Crew) -> Result<(), Runaway> {
         while self.steps < until {
             let from = self.earliest();
             if self.kept != Some(from) {
@@ -262,7 +276,7 @@ impl Rollback {
             let mut node = 0;
             loop {
                 self.parts.iter_mut().for_each(|part| part.stepper.restore());
-                match self.run(from..end, around, &mut Crew::new(1)) {
+                match self.run(from..end, around, &Crew::new(1)) {
                     Some(lost) => (end, node) = (lost.step, lost.node),
                     None => break,
                 }
@@ -274,23 +288,29 @@ impl Rollback {
     }
 
     /// Takes steps, until a node is too fast. The state is then undefined.
-    fn run(&mut self, steps: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn run(&mut self, steps: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let (scheme, count) = (self.scheme, self.parts.last()?.nodes.end);
-        let Some(meet) = around.meet else {
+        if around.meet.is_none() && around.push.is_none() {
             return self.each(crew, |part, crew| {
                 let passes = part.passes(scheme, &steps, around);
                 part.run(passes, 0..passes.len(), around, crew)
             });
-        };
+        }
         // Passes that are interrupted have the same numbers and contact in all parts.
         let outline = self.parts[0].passes(scheme, &steps, around);
         let [mut before, mut after] = [(); 2].map(|()| State::at_rest(vec![DVec3::ZERO; count]));
-        let mut begun = None;
+        let (mut begun, mut forces) = (None, around.forces.to_vec());
         for pass in 0..outline.len() {
-            let Pass { number, stage, .. } = outline.get(pass);
-            if begun.replace(number) != Some(number) {
+            let Pass { number, stage, shares, .. } = outline.get(pass);
+            if around.meet.is_some() && begun.replace(number) != Some(number) {
                 self.read(&mut before);
             }
+            if let Some(push) = around.push {
+                self.read(&mut after);
+                forces.resize(count, DVec3::ZERO);
+                push(number, shares[0], &after.position, &mut forces);
+            }
+            let around = &Around { forces: &forces, ..*around };
             let lost = self.each(crew, |part, crew| {
                 let passes = part.passes(scheme, &steps, around);
                 part.run(passes, pass..pass + 1, around, crew)
@@ -298,7 +318,7 @@ impl Rollback {
             if lost.is_some() {
                 return lost;
             }
-            if stage.has_contact() {
+            if let Some(meet) = around.meet.filter(|_| stage.has_contact()) {
                 self.read(&mut after);
                 meet(number, before.nodes(), &mut after.position, &mut after.velocity);
                 self.write(&after);
@@ -310,11 +330,7 @@ impl Rollback {
     /// Calls `advance` with each part and its threads, and returns the first of all nodes that are too fast. A part that
     /// can be divided among threads at least as well as the parts of its size has all threads of the crew. The others have
     /// one thread each, several of them at the same time.
-    fn each(
-        &mut self,
-        crew: &mut Crew,
-        advance: impl Fn(&mut PartStepper, &mut Crew) -> Option<Lost> + Sync,
-    ) -> Option<Lost> {
+    fn each(&mut self, crew: &Crew, advance: impl Fn(&mut PartStepper, &Crew) -> Option<Lost> + Sync) -> Option<Lost> {
         /// The least number of nodes for each thread.
         const LEAST: usize = 2000;
         let (all, threads) = (self.parts.last()?.nodes.end, crew.threads());
@@ -329,10 +345,10 @@ impl Rollback {
         }
         let (queue, found) = (Mutex::new(whole.into_iter()), Mutex::new(first));
         crew.run(&|_| {
-            let mut alone = Crew::new(1);
+            let alone = Crew::new(1);
             let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
             while let Some(part) = next() {
-                if let Some(lost) = advance(part, &mut alone) {
+                if let Some(lost) = advance(part, &alone) {
                     let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
                     *found = Some(found.map_or(lost, |found| found.min(lost)));
                 }

@@ -80,7 +80,7 @@ pub(crate) struct NodeVector<L> {
 
 impl<'a, L: Lanes> NodeUpdate<'a, L> {
     #[inline(always)]
-    pub(crate) fn new(stage: Stage, step: f64, gravity: DVec3, number: u64, around: Around<'a>) -> Self {
+    pub(crate) fn new(stage: Stage, step: f64, number: u64, around: Around<'a>) -> Self {
         let limits = match stage {
             Stage::FinishDrift => [number - 1, number],
             _ => [number; 2],
@@ -89,7 +89,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
             stage,
             step: L::splat(step),
             half: L::splat(0.5 * step),
-            gravity: each!(3, axis => L::splat(gravity[axis])),
+            gravity: each!(3, axis => L::splat(around.gravity[axis])),
             limits: each!(2, at => {
                 let limit = (around.speed_limit)(limits[at]);
                 L::splat(limit * limit)
@@ -104,6 +104,16 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
     #[inline(always)]
     pub(crate) fn stage(&self) -> Stage {
         self.stage
+    }
+
+    /// The forces of elements on nodes (N) with those from outside. `node` tells the node in each lane.
+    #[inline(always)]
+    pub(crate) fn pushed(&self, force: [L; 3], node: impl Fn(usize) -> usize) -> [L; 3] {
+        if self.around.forces.is_empty() {
+            return force;
+        }
+        let columns = columns(self.around.forces, each!(8, lane => node(lane.min(L::WIDTH - 1))));
+        each!(3, axis => force[axis] + L::from_array(columns[axis]))
     }
 
     /// Moves nodes by their forces (N) and inverse masses (1/kg; zero in lanes without a node), and computes contact.
@@ -300,6 +310,15 @@ fn rebound<L: Lanes>(floor: &Floor, nodes: &mut NodeVector<L>, inside: L::Mask) 
         position[axis] = bounced.select(approaches, out.select(is_deep, position[axis]));
         velocity[axis] = turned.select(approaches, velocity[axis]);
     }
+}
+
+/// The forces on the nodes of a vector, coordinate by coordinate; none on lanes without a node. It is apart from the loops over nodes of
+/// all laws, each of which would be longer with it, and takes as long to compile.
+#[cold]
+#[inline(never)]
+fn columns(forces: &[DVec3], nodes: [usize; MOST]) -> [[f64; MOST]; 3] {
+    let rows = nodes.map(|node| forces.get(node).copied().unwrap_or(DVec3::ZERO));
+    each!(3, axis => each!(8, lane => rows[lane][axis]))
 }
 
 /// The lanes inside a bound.

@@ -56,27 +56,22 @@ pub trait Lanes:
 
     /// One value in all lanes.
     fn splat(value: f64) -> Self;
-    #[doc(hidden)]
     /// [`Self::WIDTH`] values from memory, of any alignment.
     ///
     /// # Safety
     /// They are readable.
     unsafe fn load(from: *const f64) -> Self;
-    #[doc(hidden)]
     /// A precomputed distance for [`Self::load_beyond`].
     type Distance: Copy;
-    #[doc(hidden)]
-    /// The distance of so many values, less than [`MOST`].
+    /// The distance of so many values, less than `MOST`.
     fn distance(values: usize) -> Self::Distance;
-    #[doc(hidden)]
-    /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where a vector is a
+    /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for `MOST` values. Where a vector is a
     /// cache line, this reads two whole lines, the second one `line` values after the first: loads that cross
     /// lines, or cross data that were just stored, are much slower. With narrower vectors the values are consecutive.
     ///
     /// # Safety
-    /// [`MOST`] values are readable from both places, or twice as many from the first.
+    /// `MOST` values are readable from both places, or twice as many from the first.
     unsafe fn load_beyond(from: *const f64, distance: Self::Distance, line: usize) -> Self;
-    #[doc(hidden)]
     /// Writes [`Self::WIDTH`] values to memory, of any alignment.
     ///
     /// # Safety
@@ -100,10 +95,8 @@ pub trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
     /// `self` where `mask` is true, `other` elsewhere.
     fn select(self, mask: Self::Mask, other: Self) -> Self;
-    #[doc(hidden)]
     /// `[previous.last, self.first, …]`: all lanes move up by one.
     fn shift_in(self, previous: Self) -> Self;
-    #[doc(hidden)]
     /// `[self.second, …, next.first]`: all lanes move down by one.
     fn shift_out(self, next: Self) -> Self;
     /// One bit per lane, the lowest for the first.
@@ -113,11 +106,9 @@ pub trait Lanes:
     /// True where both are.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
-    #[doc(hidden)]
     /// Prefetches a cache line that will be read soon. The address need not be valid.
     #[inline(always)]
     fn expect(_: *const f64) {}
-    #[doc(hidden)]
     /// The columns of rows of eight doubles: lane `n` of column `c` is entry `c` of row `n`.
     ///
     /// # Safety
@@ -132,7 +123,6 @@ pub trait Lanes:
         }
         columns.map(Self::from_array)
     }
-    #[doc(hidden)]
     /// The columns of rows of four doubles.
     ///
     /// # Safety
@@ -147,7 +137,6 @@ pub trait Lanes:
         }
         columns.map(Self::from_array)
     }
-    #[doc(hidden)]
     /// Writes columns as rows of eight doubles, the row of the first lane first.
     ///
     /// # Safety
@@ -160,7 +149,6 @@ pub trait Lanes:
             unsafe { *row(lane).cast::<[f64; 8]>() = columns.map(|column| column[lane]) };
         }
     }
-    #[doc(hidden)]
     /// Adds columns to rows of four doubles, one row after the other, as two rows may be the same.
     ///
     /// # Safety

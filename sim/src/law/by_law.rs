@@ -157,12 +157,12 @@ impl<W: Law> Work for Energies<'_, W> {
 impl<W: Law> ForceModel for ByLaw<W> {
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
         let elements = self.elements();
-        let corners = scratch.vectors(elements.indices().len());
-        blocks::for_each_block(elements, 0..elements.len(), W::MEMORY, next, corners, &|range, next, corners| {
+        let (crew, corners) = scratch.parts(elements.indices().len());
+        blocks::for_each_block(crew, elements, W::MEMORY, next, corners, &|range, next, corners| {
             self.set.run(Forces { by: self, at, memory, range, next, corners });
         });
         let gather = || Gather::new(self.body.len(), elements.indices().iter().copied());
-        self.gather.get_or_init(gather).add(corners, forces);
+        self.gather.get_or_init(gather).add(crew, corners, forces);
     }
 
     fn is_damped(&self) -> bool {

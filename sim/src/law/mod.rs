@@ -51,7 +51,7 @@ use std::marker::PhantomData;
 /// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let elements: IndexLists = [&[0, 1, 2, 3][..]].into_iter().collect();
 /// let start = State::at_rest(rest.iter().map(|&node| node * 1.1).collect());
-/// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
+/// let body = Arc::new(Body::builder(rest).elements(elements).build().expect("a body"));
 /// let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-3);
 /// let mut world = World::new(&body, start, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
 /// let energy = world.diagnostics().elastic;

@@ -3,25 +3,27 @@
 //! Each element or spring is evaluated by one thread, which stores its forces. Then each node adds up its own forces in
 //! a fixed order. So the result has the same bits for 1, 2 or 8 threads.
 
+use crate::crew::Crew;
 use crate::lists::IndexLists;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
-/// Elements in one task. An element takes about 150 ns and starting a task some microseconds, so smaller blocks would
-/// cost more than they save; with larger ones small bodies would use one thread only.
-const BLOCK: usize = 512;
+/// Elements in the share of a thread, at least. An element takes about 150 ns and waking a thread some microseconds, so smaller shares
+/// would cost more than they save.
+const LEAST: usize = 512;
 
-/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks. The memory has
-/// `width` numbers for each element.
+/// Calls `work(element, memory of the element, corners of the element)` for every element. The memory has `width` numbers
+/// for each element.
 pub(super) fn for_each<T: Send>(
+    crew: &Crew,
     elements: &IndexLists,
     width: usize,
     memory: &mut [f64],
     corners: &mut [T],
     work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
 ) {
-    for_each_block(elements, 0..elements.len(), width, memory, corners, &|range, memory, mut corners| {
+    for_each_block(crew, elements, width, memory, corners, &|range, memory, mut corners| {
         for (element, memory) in range.zip(memory.chunks_exact_mut(width)) {
             let (own, others) = corners.split_at_mut(elements.range(element).len());
             work(element, memory, own);
@@ -30,38 +32,53 @@ pub(super) fn for_each<T: Send>(
     });
 }
 
-/// Calls `work(elements, memory of the elements, corners of the elements)` for the blocks of a range.
+/// Calls `work(elements, memory of the elements, corners of the elements)` for the share of each thread.
 pub(crate) fn for_each_block<T: Send>(
+    crew: &Crew,
     elements: &IndexLists,
-    range: Range<usize>,
     width: usize,
-    memory: &mut [f64],
-    corners: &mut [T],
+    mut memory: &mut [f64],
+    mut corners: &mut [T],
     work: &(impl Fn(Range<usize>, &mut [f64], &mut [T]) + Sync),
 ) {
-    if range.len() <= BLOCK {
-        return work(range, memory, corners);
-    }
-    let middle = range.start + range.len() / 2;
-    let first_corner = |element: usize| elements.range(element).start;
-    let (memory_low, memory_high) = memory.split_at_mut((middle - range.start) * width);
-    let (corners_low, corners_high) = corners.split_at_mut(first_corner(middle) - first_corner(range.start));
-    rayon::join(
-        || for_each_block(elements, range.start..middle, width, memory_low, corners_low, work),
-        || for_each_block(elements, middle..range.end, width, memory_high, corners_high, work),
-    );
+    let first_corner = |element: usize| if element == 0 { 0 } else { elements.range(element - 1).end };
+    let shares = shares(crew, elements.len()).map(|range| {
+        let (own, others) = std::mem::take(&mut memory).split_at_mut(range.len() * width);
+        memory = others;
+        let (places, others) =
+            std::mem::take(&mut corners).split_at_mut(first_corner(range.end) - first_corner(range.start));
+        corners = others;
+        (range, own, places)
+    });
+    run(crew, shares, |(range, memory, corners)| work(range, memory, corners));
 }
 
-/// Calls `work(index, value)` for every value, in blocks.
-pub(super) fn for_each_one<T: Send>(values: &mut [T], work: &(impl Fn(usize, &mut T) + Sync)) {
-    let block = |start: usize, values: &mut [T]| {
-        values.iter_mut().enumerate().for_each(|(at, value)| work(start + at, value));
-    };
-    if values.len() <= BLOCK {
-        block(0, values);
-    } else {
-        values.par_chunks_mut(BLOCK).enumerate().for_each(|(at, values)| block(at * BLOCK, values));
+/// Calls `work(index, value)` for every value.
+pub(super) fn for_each_one<T: Send>(crew: &Crew, mut values: &mut [T], work: &(impl Fn(usize, &mut T) + Sync)) {
+    let shares = shares(crew, values.len()).map(|range| {
+        let (own, others) = std::mem::take(&mut values).split_at_mut(range.len());
+        values = others;
+        (range.start, own)
+    });
+    run(crew, shares, |(start, own)| own.iter_mut().enumerate().for_each(|(at, value)| work(start + at, value)));
+}
+
+/// The share of each thread in a number of elements.
+fn shares(crew: &Crew, count: usize) -> impl Iterator<Item = Range<usize>> {
+    let threads = crew.threads().min(count / LEAST).max(1);
+    (0..threads).map(move |at| at * count / threads..(at + 1) * count / threads)
+}
+
+/// Calls `work` with each share, each on a thread of its own.
+fn run<S: Send>(crew: &Crew, shares: impl Iterator<Item = S>, work: impl Fn(S) + Sync) {
+    let shares: Vec<_> = shares.map(|share| Mutex::new(Some(share))).collect();
+    if let [only] = &shares[..] {
+        return only.lock().unwrap_or_else(PoisonError::into_inner).take().into_iter().for_each(work);
     }
+    crew.run(&|me| {
+        let own = shares.get(me).and_then(|own| own.lock().unwrap_or_else(PoisonError::into_inner).take());
+        own.into_iter().for_each(&work);
+    });
 }
 
 /// For each node, the entries of a list of forces that act on it.
@@ -76,8 +93,8 @@ impl Gather {
     }
 
     /// Adds the entries of each node to its force, in rising order.
-    pub(crate) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
-        for_each_one(forces, &|node, force| {
+    pub(crate) fn add(&self, crew: &Crew, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(crew, forces, &|node, force| {
             for &entry in self.entries.of(node) {
                 *force += entries[entry];
             }
@@ -99,8 +116,8 @@ impl SignedGather {
 
     /// Adds the forces of its springs to each node, in rising order; with the opposite sign at the second node of a
     /// spring.
-    pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
-        for_each_one(forces, &|node, force| {
+    pub(super) fn add(&self, crew: &Crew, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(crew, forces, &|node, force| {
             for &entry in self.entries.of(node) {
                 let spring = entries[entry / 2];
                 *force += if entry % 2 == 0 { spring } else { -spring };

@@ -11,9 +11,9 @@
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 use super::Lanes;
-use super::continuum::{Map, Stress, dot, parameters, with_nearest};
+use super::continuum::{Map, Stress, dot, of_law, with_nearest};
 
-parameters!(Corotational);
+of_law!(Corotational);
 
 /// Hooke's law for strains without rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,15 +10,19 @@
 //! spring of `k / (1 − 0.999²) ≈ 500 k`. The tension has no jump there, stays finite, and is the derivative of an energy everywhere; `|x| < L` holds
 //! for all energies that a step can follow. Springs without a natural length have no limit. Damping is that of Eq. (1).
 
-use super::mass_spring::{self, MassSpring, length, natural_length};
-use super::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Misfit, TypedModel, Vectorised};
+#[cfg(feature = "scene")]
+use super::mass_spring;
+use super::mass_spring::{MassSpring, length, natural_length};
+use super::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Properties, Setting, Vectorised};
 use crate::body::Body;
 use crate::kernel::shapes::square;
 use crate::lanes::each;
 use crate::lists::IndexLists;
+#[cfg(feature = "scene")]
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+#[cfg(feature = "scene")]
 mass_spring::parameters! {
     /// The greatest elongation, and shortening, of each spring as a share of its natural length.
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
@@ -34,50 +38,34 @@ pub struct LimitedSprings {
     pub limit: f64,
 }
 
+#[cfg(feature = "scene")]
 impl Parameters {
     /// A model with this elastic constant (N/m) and limit; the other parameters have their defaults.
     pub fn new(stiffness: f64, limit: f64) -> Self {
         Self { stiffness, limit, damping: None, damping_ratio: None, springs: None }
     }
-
-    fn unlimited(&self) -> mass_spring::Parameters {
-        let &Self { stiffness, damping, damping_ratio, springs, .. } = self;
-        mass_spring::Parameters { stiffness, damping, damping_ratio, springs, breaks_at: None }
-    }
 }
 
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+#[cfg(feature = "scene")]
+impl super::TypedModel for Parameters {
+    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, super::Misfit> {
         // The schema has the same bounds; scenes made in code pass them by.
         if !(self.limit > 0.0 && self.limit <= 1.0) {
             let message =
                 format!("`limit` is {}; expected a share of the natural length above 0 and at most 1", self.limit);
-            return Err(Misfit { key: "limit", message });
+            return Err(super::Misfit { key: "limit", message });
         }
-        Ok(Arc::new(LimitedSprings { springs: self.unlimited().model(body, listed)?, limit: self.limit }))
+        Ok(Arc::new(LimitedSprings { springs: self.of_springs().model(body, listed)?, limit: self.limit }))
     }
 
     fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
-        self.unlimited().most_springs(elements, listed)
+        self.of_springs().most(elements, listed)
     }
 }
 
 impl ElasticModel for LimitedSprings {
-    fn stiffness(&self) -> f64 {
-        self.springs.stiffness
-    }
-
-    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        let springs = self.springs.times(stiffness, damping);
-        Some(Arc::new(Self { springs, ..*self }))
-    }
-
-    fn damping(&self) -> f64 {
-        self.springs.damping
-    }
-
-    fn unusual_choices(&self, _: &Body) -> String {
-        format!(", elongation below {} of the length", self.limit)
+    fn properties(&self, _: &Body) -> Properties {
+        self.springs.of_springs("limited-springs").with("limit", Setting::Number(self.limit, ""))
     }
 
     fn springs(&self) -> &[[u32; 2]] {
@@ -164,7 +152,7 @@ impl Law for LimitedSprings {
 mod tests {
     use super::*;
     use crate::crew::Crew;
-    use crate::element::{Dimension, Solids};
+
     use crate::model::Scratch;
     use crate::state::State;
     use glam::DVec3;
@@ -173,7 +161,7 @@ mod tests {
     fn spring(limit: f64, length: f64) -> [f64; 2] {
         let rest = vec![DVec3::ZERO, 2.0 * DVec3::X];
         let elements = [&[0, 1][..]].into_iter().collect();
-        let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, Solids::Ordered, None));
+        let body = Arc::new(Body::builder(rest).elements(elements).build().expect("a body"));
         let springs = MassSpring { stiffness: 7.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
         let state = State::at_rest(vec![DVec3::ONE, DVec3::ONE + length * DVec3::Y]);
         let (law, mut forces) = (ByLaw::new(LimitedSprings { springs, limit }, &body), vec![DVec3::ZERO; 2]);
@@ -211,7 +199,7 @@ mod tests {
     fn springs_without_a_length_have_no_limit() {
         let rest = vec![DVec3::ZERO; 2];
         let elements = [&[0, 1][..]].into_iter().collect();
-        let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, Solids::Ordered, None));
+        let body = Arc::new(Body::builder(rest).elements(elements).build().expect("a body"));
         let springs = MassSpring { stiffness: 7.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
         let law = ByLaw::new(LimitedSprings { springs, limit: 0.5 }, &body);
         let energy = crate::law::Energy::report(&law, &[DVec3::ZERO, 3.0 * DVec3::X], &[], None, &Crew::new(1)).energy;

@@ -10,9 +10,9 @@
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 use super::Lanes;
-use super::continuum::{Map, Stress, parameters};
+use super::continuum::{Map, Stress, of_law};
 
-parameters!(Linear);
+of_law!(Linear);
 
 /// Hooke's law for small strains.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,8 +12,8 @@
 //! what breaks as a whole is an element of the shape model.
 
 use super::{
-    Breaking, ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Misfit, Report, Scratch, Share,
-    Strained, TypedModel, Vectorised, blocks,
+    Breaking, ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Properties, Report, Scratch,
+    Setting, Share, Strained, Vectorised, blocks,
 };
 use crate::body::Body;
 use crate::fill;
@@ -24,17 +24,21 @@ use crate::lanes::each;
 use crate::lists::IndexLists;
 use crate::mode::Mode;
 use crate::state::Nodes;
+#[cfg(feature = "scene")]
 use crate::topology::Springs;
 use glam::DVec3;
+#[cfg(feature = "scene")]
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What to write in place of a modulus. In uniform strain `W = k/2V Σ (L n·ε n)²` over springs with the directions `n`; the mean over all
 /// rotations of the body has `λ = μ = k Σ L²/15V`, in the plane `k Σ L²/8A`.
+#[cfg(feature = "scene")]
 pub(super) const YOUNG: &str = "springs have a Poisson's ratio of their own, 1/4, in the plane 1/3; write `stiffness`: 6 E V/Σ L² with the volume \
                                 V of the body and the lengths L of its springs, in the plane 3 E A/Σ L²; on cubes of side a about E a/2";
 
 /// Defines the parameters of springs in a scene file, with those of one model.
+#[cfg(feature = "scene")]
 macro_rules! parameters {
     ($($(#[$attribute:meta])* $own:ident: $type:ty,)*) => {
         /// The parameters of the model in a scene file.
@@ -60,10 +64,20 @@ macro_rules! parameters {
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub springs: Option<crate::topology::Springs>,
         }
+
+        impl Parameters {
+            /// What all models of springs have.
+            fn of_springs(&self) -> crate::model::mass_spring::OfSprings {
+                let &Self { stiffness, damping, damping_ratio, springs, .. } = self;
+                crate::model::mass_spring::OfSprings { stiffness, damping, damping_ratio, springs }
+            }
+        }
     };
 }
+#[cfg(feature = "scene")]
 pub(super) use parameters;
 
+#[cfg(feature = "scene")]
 parameters! {
     /// The elongation, as a share of the natural length, at which a spring breaks: it is taken out for good. Default: springs never break.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -84,6 +98,7 @@ pub struct MassSpring {
     pub breaks_at: Option<f64>,
 }
 
+#[cfg(feature = "scene")]
 impl Parameters {
     /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
@@ -91,12 +106,52 @@ impl Parameters {
     }
 }
 
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        Ok(Arc::new(self.model(body, listed)?))
+#[cfg(feature = "scene")]
+impl super::TypedModel for Parameters {
+    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, super::Misfit> {
+        let (springs, breaks_at) = (self.of_springs().model(body, listed)?, super::breaks_at(self.breaks_at)?);
+        Ok(Arc::new(MassSpring { breaks_at, ..springs }))
     }
 
     fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        self.of_springs().most(elements, listed)
+    }
+}
+
+/// The springs of bodies that list none and of models that name none.
+#[cfg(feature = "scene")]
+const DEFAULT: Springs = Springs::EdgesFaceDiagonals;
+
+/// The parameters that all models of springs have.
+#[cfg(feature = "scene")]
+pub(super) struct OfSprings {
+    pub(super) stiffness: f64,
+    pub(super) damping: Option<f64>,
+    pub(super) damping_ratio: Option<f64>,
+    pub(super) springs: Option<Springs>,
+}
+
+#[cfg(feature = "scene")]
+impl OfSprings {
+    /// The springs of a body that lists these, if it lists any.
+    pub(super) fn model(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<MassSpring, super::Misfit> {
+        let springs = match (self.springs, listed) {
+            (None, Some(listed)) => listed.to_vec(),
+            (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
+        };
+        if springs.is_empty() {
+            let topology = self.springs.unwrap_or(DEFAULT).name();
+            let message = format!(
+                "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
+            );
+            return Err(super::Misfit { key: "springs", message });
+        }
+        let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
+        Ok(MassSpring { stiffness: self.stiffness, damping, springs: springs.into(), breaks_at: None })
+    }
+
+    /// See [`ModelParameters::most_springs`](super::ModelParameters::most_springs).
+    pub(super) fn most(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
         if let (None, Some(listed)) = (self.springs, listed) {
             return listed;
         }
@@ -113,52 +168,17 @@ impl TypedModel for Parameters {
     }
 }
 
-/// The springs of bodies that list none and of models that name none.
-const DEFAULT: Springs = Springs::EdgesFaceDiagonals;
-
-impl Parameters {
-    /// The model for a body that lists these springs, if it lists any.
-    pub(super) fn model(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<MassSpring, Misfit> {
-        let springs = match (self.springs, listed) {
-            (None, Some(listed)) => listed.to_vec(),
-            (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
-        };
-        if springs.is_empty() {
-            let topology = super::typed(&self.springs.unwrap_or(DEFAULT));
-            let message = format!(
-                "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
-            );
-            return Err(Misfit { key: "springs", message });
-        }
-        let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
-        let breaks_at = super::breaks_at(self.breaks_at)?;
-        Ok(MassSpring { stiffness: self.stiffness, damping, springs: springs.into(), breaks_at })
-    }
-}
-
 impl ElasticModel for MassSpring {
-    fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        Some(Arc::new(self.times(stiffness, damping)))
-    }
-
-    fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    fn unusual_choices(&self, _: &Body) -> String {
-        self.breaks_at.map_or_else(String::new, |strain| format!(", breaks at {strain}"))
+    fn properties(&self, _: &Body) -> Properties {
+        let own = self.of_springs("mass-spring");
+        match self.breaks_at {
+            Some(strain) => Properties { breakable: Some(1), ..own.with("breaks_at", Setting::Number(strain, "")) },
+            None => own,
+        }
     }
 
     fn springs(&self) -> &[[u32; 2]] {
         &self.springs
-    }
-
-    fn breaks(&self, _: &Body) -> Option<usize> {
-        self.breaks_at.map(|_| 1)
     }
 
     fn start(&self, _: &Body, _: &[DVec3]) -> Vec<f64> {
@@ -204,10 +224,9 @@ impl Vectorised for MassSpring {
 }
 
 impl MassSpring {
-    /// This model with its stiffness and its damping multiplied.
-    pub(super) fn times(&self, stiffness: f64, damping: f64) -> Self {
-        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
-        Self { stiffness, damping, ..self.clone() }
+    /// The properties of a model that has these springs.
+    pub(super) fn of_springs(&self, kind: &'static str) -> Properties {
+        Properties::new(kind, self.stiffness).damped(self.damping)
     }
 
     /// The law of springs that break, if they do.
@@ -368,8 +387,8 @@ impl ForceModel for SpringForces {
         forces: &mut [DVec3],
     ) {
         let Self { model, natural_length, gather, .. } = self;
-        let spring_forces = scratch.vectors(natural_length.len());
-        blocks::for_each_one(spring_forces, &|spring, out| {
+        let (crew, spring_forces) = scratch.parts(natural_length.len());
+        blocks::for_each_one(crew, spring_forces, &|spring, out| {
             let [i, j] = model.springs[spring].map(|node| node as usize);
             let [k, d] = self.constants(spring);
             *out = spring_force(
@@ -380,7 +399,7 @@ impl ForceModel for SpringForces {
                 d,
             );
         });
-        gather.add(spring_forces, forces);
+        gather.add(crew, spring_forces, forces);
     }
 
     fn is_damped(&self) -> bool {
@@ -414,7 +433,7 @@ fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
     p * -(k * (1.0 - l / squared.sqrt()) + d * v.dot(p) / squared)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "scene"))]
 mod tests {
     use super::*;
     use crate::element::{Dimension, Solids};
@@ -438,19 +457,16 @@ mod tests {
             let elements: IndexLists = [own.as_slice()].into_iter().collect();
             // On this curve every face of the hull is a triangle, so the hull has the greatest possible number of
             // edges.
-            let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
-            let body = Body::new(dimension, rest, vec![1.0; nodes], elements, solids, None);
+            let height = if dimension == Dimension::Plane { 0.0 } else { 1.0 };
+            let rest: Vec<_> =
+                (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, height * t * t * t)).collect();
+            let body =
+                Body::builder(rest).dimension(dimension).elements(elements).solids(solids).build().expect("a body");
             for springs in named {
-                let typed = Parameters {
-                    stiffness: 1.0,
-                    damping: None,
-                    damping_ratio: None,
-                    springs: Some(springs),
-                    breaks_at: None,
-                };
+                let typed = Parameters { springs: Some(springs), ..Parameters::new(1.0) };
                 let made = body.topology().springs(springs).len() as u128;
                 assert!(
-                    made <= typed.most_springs(&BTreeMap::from([(nodes, 1)]), None),
+                    made <= typed.of_springs().most(&BTreeMap::from([(nodes, 1)]), None),
                     "{dimension:?}, {nodes} nodes, {springs:?}: {made}"
                 );
             }

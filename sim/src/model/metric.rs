@@ -28,7 +28,8 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
-use super::{ElasticModel, ForceModel, Misfit, TypedModel, Vectorised, continuum};
+use super::continuum::of_material;
+use super::{ElasticModel, ForceModel, Misfit, Properties, Setting, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::kernel::rotation::cross;
@@ -36,14 +37,9 @@ use crate::lanes::{Lanes, each};
 use crate::law::{ByLaw, Corners, Element, Law, Rigid, off};
 use crate::material::{Damping, Material};
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The parameters of the model in a scene file: those of finite elements.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub struct Parameters(pub continuum::Parameters);
+of_material!(|body, material, damping| Metric::new(body, material, damping));
 
 /// The model for a body, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,17 +51,6 @@ pub struct Metric {
     stiffness: f64,
     /// `μ/4` and `λ/8` (Pa).
     moduli: [f64; 2],
-}
-
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        let continuum::Parameters { young, poisson, damping, damping_ratio } = self.0;
-        let material = Material { young, poisson: poisson.unwrap_or(0.0) };
-        let undamped = Metric::new(body, material, 0.0)?;
-        super::material(Some(young), poisson, body)?;
-        let damping = super::damping(damping, damping_ratio, undamped.stiffness, body)?;
-        Ok(Arc::new(Metric { damping: Damping::new(damping, body), ..undamped }))
-    }
 }
 
 impl Metric {
@@ -101,6 +86,7 @@ impl Metric {
                 return Err(Misfit { key: "kind", message });
             }
         }
+        super::check(material, body)?;
         let stiffness = material.stiffness(body).into_iter().fold(0.0, f64::max);
         let moduli = [0.25 * material.shear(), 0.125 * material.lame(body.dimension)];
         Ok(Self { material, damping: Damping::new(damping, body), stiffness, moduli })
@@ -118,29 +104,9 @@ fn spanned(body: &Body, nodes: &[u32], corner: usize) -> f64 {
 }
 
 impl ElasticModel for Metric {
-    fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        let material = Material { young: self.material.young * stiffness, ..self.material };
-        let moduli = self.moduli.map(|modulus| modulus * stiffness);
-        let Damping { most, slope } = self.damping;
-        let damping = Damping { most: most * damping, slope: slope * damping };
-        Some(Arc::new(Self { material, damping, stiffness: self.stiffness * stiffness, moduli }))
-    }
-
-    fn typed_material(&self) -> Option<Material> {
-        Some(self.material)
-    }
-
-    fn damping(&self) -> f64 {
-        self.damping.most
-    }
-
-    fn unusual_choices(&self, _: &Body) -> String {
-        let damping = if self.damping.most > 0.0 { " of deformation" } else { "" };
-        damping.to_owned()
+    fn properties(&self, body: &Body) -> Properties {
+        let undamped = Properties::new("metric", self.stiffness).of_material(Some(self.material), body.dimension);
+        undamped.damped(self.damping.most).fixed("damping_of", Setting::Choice("deformation"))
     }
 
     fn vectorised(&self) -> Option<&dyn Vectorised> {

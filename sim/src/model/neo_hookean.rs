@@ -14,9 +14,9 @@
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 use super::Lanes;
-use super::continuum::{Map, Stress, cofactors, dot, parameters};
+use super::continuum::{Map, Stress, cofactors, dot, of_law};
 
-parameters!(NeoHookean);
+of_law!(NeoHookean);
 
 /// The stable neo-Hookean law.
 #[derive(Clone, Copy, Debug, PartialEq)]

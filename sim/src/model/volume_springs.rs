@@ -17,9 +17,11 @@
 //!
 //! The model is a sum of two laws in one: its elements are the springs, which have two nodes, and those of the body.
 
-use super::mass_spring::{self, MassSpring, natural_length};
+#[cfg(feature = "scene")]
+use super::mass_spring;
+use super::mass_spring::{MassSpring, natural_length};
 use super::{
-    ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Misfit, TypedModel, Vectorised, volumes_at_rest,
+    ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Properties, Setting, Vectorised, volumes_at_rest,
 };
 use crate::body::Body;
 use crate::element::Dimension;
@@ -28,9 +30,11 @@ use crate::kernel::rotation::{Matrix, cross};
 use crate::lanes::each;
 use crate::lists::IndexLists;
 use glam::{DMat3, DVec3};
+#[cfg(feature = "scene")]
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+#[cfg(feature = "scene")]
 mass_spring::parameters! {
     /// Bulk modulus `κ`, by which each element resists changes of its volume (Pa; N/m in the plane). Of a cube of side `a` that counts in the
     /// cycle T as a stiffness of `3κa/2`, of a square as `2κ`, if it is greater than `stiffness`.
@@ -47,64 +51,46 @@ pub struct VolumeSprings {
     pub bulk: f64,
 }
 
+#[cfg(feature = "scene")]
 impl Parameters {
     /// A model with this elastic constant (N/m) and this bulk modulus (Pa); the other parameters have their defaults.
     pub fn new(stiffness: f64, bulk: f64) -> Self {
         Self { stiffness, bulk, damping: None, damping_ratio: None, springs: None }
     }
-
-    fn without_volume(&self) -> mass_spring::Parameters {
-        let &Self { stiffness, damping, damping_ratio, springs, .. } = self;
-        mass_spring::Parameters { stiffness, damping, damping_ratio, springs, breaks_at: None }
-    }
 }
 
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+#[cfg(feature = "scene")]
+impl super::TypedModel for Parameters {
+    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, super::Misfit> {
         // The schema has the same bound; scenes made in code pass it by.
         if !(self.bulk > 0.0 && self.bulk.is_finite()) {
             let message = format!("`bulk` is {}; expected a modulus above 0 (Pa)", self.bulk);
-            return Err(Misfit { key: "bulk", message });
+            return Err(super::Misfit { key: "bulk", message });
         }
         if !volumes_at_rest(body).iter().any(|&volume| volume > 0.0) {
             let measure = if body.dimension == Dimension::Plane { "area" } else { "volume" };
             let message =
                 format!("no element has {measure} that `bulk` could keep; take `kind = \"mass-spring\"` without it");
-            return Err(Misfit { key: "bulk", message });
+            return Err(super::Misfit { key: "bulk", message });
         }
-        Ok(Arc::new(VolumeSprings { springs: self.without_volume().model(body, listed)?, bulk: self.bulk }))
+        Ok(Arc::new(VolumeSprings { springs: self.of_springs().model(body, listed)?, bulk: self.bulk }))
     }
 
     fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
-        self.without_volume().most_springs(elements, listed)
+        self.of_springs().most(elements, listed)
     }
 }
 
 impl ElasticModel for VolumeSprings {
-    fn stiffness(&self) -> f64 {
-        self.springs.stiffness
-    }
-
-    /// With the stiffness of an element against changes of its volume, if that is greater than that of a spring. At rest it is
-    /// `κ V0 Σ |b|²` with the gradient `V0 b` of the volume at each corner.
-    fn shortest_period(&self, body: &Body) -> f64 {
+    /// The stiffness of an element against changes of its volume may be greater than that of a spring. At rest it is `κ V0 Σ |b|²` with
+    /// the gradient `V0 b` of the volume at each corner.
+    fn properties(&self, body: &Body) -> Properties {
         let of_volumes = body.elements.iter().zip(volumes_at_rest(body)).filter(|&(_, volume)| volume > 0.0);
         let stiffness = of_volumes.map(|(nodes, volume)| self.bulk * volume * spread(body, nodes));
-        let most = stiffness.fold(self.springs.stiffness, f64::max);
-        std::f64::consts::TAU * (body.lightest() / most).sqrt()
-    }
-
-    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        Some(Arc::new(Self { springs: self.springs.times(stiffness, damping), bulk: self.bulk * stiffness }))
-    }
-
-    fn damping(&self) -> f64 {
-        self.springs.damping
-    }
-
-    fn unusual_choices(&self, body: &Body) -> String {
+        let stiffest = stiffness.fold(self.springs.stiffness, f64::max);
         let unit = if body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
-        format!(", κ = {:e} {unit}", self.bulk)
+        let own = self.springs.of_springs("volume-springs").with("bulk", Setting::Number(self.bulk, unit));
+        Properties { stiffest, ..own }
     }
 
     fn springs(&self) -> &[[u32; 2]] {
@@ -276,10 +262,10 @@ impl Law for Sum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::Solids;
+
     use crate::integrate::Integrator;
     use crate::state::State;
-    use crate::system::Surroundings;
+    use crate::surroundings::Surroundings;
     use crate::topology::Springs;
     use crate::world::{Stepping, World};
 
@@ -287,7 +273,7 @@ mod tests {
     fn square() -> (Arc<Body>, MassSpring) {
         let rest = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
         let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
-        let body = Body::new(Dimension::Plane, rest, vec![1.0; 4], elements, Solids::Ordered, None);
+        let body = Body::builder(rest).dimension(Dimension::Plane).elements(elements).build().expect("a body");
         let springs = body.topology().springs(Springs::EdgesFaceDiagonals).into();
         (Arc::new(body), MassSpring { stiffness: 10.0, damping: 1.0, springs, breaks_at: None })
     }
@@ -331,8 +317,8 @@ mod tests {
     fn the_shortest_period_is_that_of_the_stiffer_of_both() {
         let (body, springs) = square();
         // Two sides of unit length: M = I.
-        let period = |bulk| VolumeSprings { springs: springs.clone(), bulk }.shortest_period(&body);
-        assert_eq!(period(0.1), springs.shortest_period(&body));
+        let period = |bulk| VolumeSprings { springs: springs.clone(), bulk }.properties(&body).shortest_period(&body);
+        assert_eq!(period(0.1), springs.properties(&body).shortest_period(&body));
         assert!((period(50.0) - std::f64::consts::TAU / 10.0).abs() < 1e-12);
     }
 }

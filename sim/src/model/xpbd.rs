@@ -10,7 +10,7 @@
 //! within a step and begin at 0 in each. There is one iteration a step, with small steps in place of more (M. Macklin et al., Small Steps in
 //! Physics Simulation, Symposium on Computer Animation 2019): the `step` of a run is their substep.
 //!
-//! The constraints of an element: `C = √(Σ |r − R|²)` with `α = 1/k`, whose energy is that of [`shape_based`](super::shape_based) with
+//! The constraints of an element: `C = √(Σ |r − R|²)` with `α = 1/k`, whose energy is that of [`super::shape_based`] with
 //! its material and its `bending`; and with a Poisson's ratio `det F − 1` with `α = 1/λV`. Of one element of equal masses the first one alone
 //! is shape matching, `Δx = −s (r − R)` with `s = kΔT²/(m + kΔT²)` (M. Müller et al., Meshless Deformations Based on Shape Matching, SIGGRAPH
 //! 2005). Elements come one after the other, each from the positions that the one before has left, in one thread. Their order breaks the symmetry
@@ -31,18 +31,19 @@
 //! Clustering, 2023), a tetrahedron at rest diverges from `ωΔT = √(4/3)` on, less than the 2 of semi-implicit Euler; one after the other, they
 //! do not leave it at rest.
 
+#[cfg(feature = "scene")]
+use super::shape_based;
 use super::shape_based::ShapeBased;
-use super::{ElasticModel, ForceModel, Misfit, Projection, Ratio, TypedModel};
+use super::{ElasticModel, ForceModel, Parameter, Projection, Properties, Setting};
 use crate::body::Body;
-use crate::material::{Material, spread};
+use crate::material::Material;
 use crate::mode::Mode;
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The parameters of the model in a scene file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg(feature = "scene")]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["stiffness"] }, { "required": ["young"] }]))]
 #[schemars(extend("dependentRequired" = { "poisson": ["young"] }))]
@@ -61,7 +62,7 @@ pub struct Parameters {
     pub poisson: Option<f64>,
     /// A factor of what resists bending, as of `shape-based`. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bending: Option<Ratio>,
+    pub bending: Option<super::Ratio>,
 }
 
 /// The model with its parameters in SI units, checked.
@@ -71,6 +72,7 @@ pub struct Xpbd {
     shape: ShapeBased,
 }
 
+#[cfg(feature = "scene")]
 impl Parameters {
     /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
@@ -83,11 +85,16 @@ impl Parameters {
     }
 }
 
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+#[cfg(feature = "scene")]
+impl super::TypedModel for Parameters {
+    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, super::Misfit> {
         let (stiffness, material) = super::stiffness(self.stiffness, self.young, self.poisson, body)?;
         let bending = self.bending.map_or(1.0, |bending| bending.0);
         Ok(Arc::new(Xpbd::new(ShapeBased { material, bending, ..ShapeBased::new(stiffness) })))
+    }
+
+    fn without_effect(&self, body: &Body) -> Option<super::Misfit> {
+        shape_based::Parameters { bending: self.bending, ..Default::default() }.without_effect(body)
     }
 }
 
@@ -99,38 +106,18 @@ impl Xpbd {
 }
 
 impl ElasticModel for Xpbd {
-    fn stiffness(&self) -> f64 {
-        self.shape.stiffness
-    }
-
-    fn scaled(&self, stiffness: f64, _: f64) -> Option<Arc<dyn ElasticModel>> {
-        Some(Arc::new(Self { shape: self.shape.times(stiffness, 0.0) }))
+    fn properties(&self, body: &Body) -> Properties {
+        let of_shape = self.shape.properties(body);
+        let Properties { stiffness, counts_fallbacks, parameters, fixed, .. } = of_shape;
+        let is_own = |parameter: &Parameter| matches!(parameter.name, "stiffness" | "young" | "poisson" | "bending");
+        let (parameters, others): (Vec<_>, Vec<_>) = parameters.into_iter().partition(is_own);
+        let rotation = others.into_iter().filter(|parameter| parameter.name == "rotation").chain(fixed).collect();
+        let own = Properties { counts_fallbacks, parameters, fixed: rotation, ..Properties::new("xpbd", stiffness) };
+        own.fixed("iterations", Setting::Count(1))
     }
 
     fn material(&self, body: &Body) -> Option<Material> {
         self.shape.material(body)
-    }
-
-    fn typed_material(&self) -> Option<Material> {
-        self.shape.typed_material()
-    }
-
-    fn without_effect(&self, body: &Body) -> Option<Misfit> {
-        self.shape.without_effect(body)
-    }
-
-    /// One iteration resolves the constraint of an element, with the pull `p = w |∇C| λ` on a node. In balance its neighbours pull by `−p`
-    /// together. Half of them come later in the step, so that the element ends it wider by `p/2` than the `α̃ λ` of its stiffness: by the
-    /// factor `1 + w/2α̃`, with the mean `w` of its nodes. Elements count by their energies in the same strain.
-    fn softening(&self, body: &Body, step: f64) -> f64 {
-        let (parts, mut sums) = (self.shape.relative_stiffness(body), [0.0; 2]);
-        for (element, nodes) in body.elements.iter().enumerate() {
-            let stiffness = self.shape.stiffness * parts.as_ref().map_or(1.0, |parts| parts[element]);
-            let (energy, count) = (stiffness * spread(body, nodes).0, nodes.len() as f64);
-            let light = nodes.iter().map(|&node| 1.0 / body.mass[node as usize]).sum::<f64>() / count;
-            sums = [sums[0] + energy, sums[1] + energy * (0.5 * light * stiffness * step * step)];
-        }
-        1.0 + sums[1] / sums[0]
     }
 
     /// It exerts no forces in a step.
@@ -138,20 +125,8 @@ impl ElasticModel for Xpbd {
         Some(Mode { stiffness: 0.0, damping: 0.0 })
     }
 
-    fn choices(&self, body: &Body) -> String {
-        format!("{}, one iteration a step", self.shape.choices(body))
-    }
-
-    fn unusual_choices(&self, body: &Body) -> String {
-        self.shape.unusual_choices(body)
-    }
-
     fn projection(&self, body: &Arc<Body>) -> Option<Box<dyn Projection>> {
         Some(self.shape.constraints(body))
-    }
-
-    fn counts_global(&self, body: &Body) -> bool {
-        self.shape.counts_global(body)
     }
 
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {

@@ -3,13 +3,12 @@
 use super::linearised::{iterate, rotation_by_arctangent, rotation_by_length, solve};
 use super::{Followed, davenport1968, linear_update, robust};
 use glam::{DMat3, DQuat};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// How the rotation of an element is computed: three readings of the paper's Eqs. (15) and (16), and the optimum.
 /// `docs/accuracy.md` compares their errors and their cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum RotationReading {
     /// Eq. (15), and a rotation about its solution `w` by the angle `atan |w|`, which is Eq. (9) about that axis.
     /// Rotations are accumulated as quaternions. With two passes the error is 5e-14 rad after a rotation by 0.01 rad in
@@ -28,6 +27,16 @@ pub enum RotationReading {
 }
 
 impl RotationReading {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Arctangent => "arctangent",
+            Self::VectorLength => "vector-length",
+            Self::LinearUpdate => "linear-update",
+            Self::Robust => "robust",
+        }
+    }
+
     /// Whether it is an iteration with a fixed number of passes, so that the result depends on the last rotation.
     pub fn has_passes(self) -> bool {
         self != Self::Robust

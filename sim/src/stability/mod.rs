@@ -15,7 +15,7 @@ use super::fill;
 use super::grip::Grip;
 use super::integrate::Integrator;
 use super::mode::Mode;
-use super::model::{ElasticModel, ForceModel, Scratch};
+use super::model::{ElasticModel, ForceModel, Properties, Scratch};
 use super::state::Nodes;
 use glam::DVec3;
 use std::sync::Arc;
@@ -184,7 +184,8 @@ fn stretched(body: &Body, model: &dyn ElasticModel, is_free: &[bool]) -> Mode {
     };
     let most = most_products(2 * model.springs().len());
     let (value, _) = lanczos::largest(&start(body, is_free), most, false, product);
-    Mode { stiffness: model.stiffness() * value, damping: model.damping() * value }
+    let Properties { stiffness, damping, .. } = model.properties(body);
+    Mode { stiffness: stiffness * value, damping: damping * value }
 }
 
 /// The forces of a model around rest.

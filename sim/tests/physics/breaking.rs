@@ -6,7 +6,7 @@ use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{DampingReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, Report};
 use localshape_sim::{
-    Body, Crew, Dimension, Field, Integrator, Kernel, Snapshot, Solids, Springs, State, Stepping, Surroundings, World,
+    Body, Crew, Dimension, Field, Integrator, Kernel, Snapshot, Springs, State, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ fn torn(cells: u32) -> (Arc<Body>, State) {
         let side = if rest.x > middle { 1.0 } else { -1.0 };
         DVec3::new(6.0 * side, 0.0, 0.0) + DVec3::new(0.0, 1.0, 2.0).cross(rest) + noise.vector()
     };
-    let start = State::new(body.rest.clone(), body.rest.iter().map(velocity).collect());
+    let start = State::new(body.rest().to_vec(), body.rest().iter().map(velocity).collect());
     (body, start)
 }
 
@@ -44,7 +44,7 @@ fn strip() -> Arc<Body> {
     let rest = (0..12).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0) * 0.1).collect();
     let squares: Vec<_> = (0..5).map(|at| [0, 2, 3, 1].map(|corner| 2 * at + corner)).collect();
     let elements = squares.iter().map(|square| &square[..]).collect();
-    Arc::new(Body::new(Dimension::Plane, rest, vec![1.0; 12], elements, Solids::Ordered, None))
+    Arc::new(Body::builder(rest).dimension(Dimension::Plane).elements(elements).build().expect("a body"))
 }
 
 fn world(body: &Arc<Body>, start: &State, model: &dyn ElasticModel, kernel: Kernel) -> World {
@@ -71,9 +71,9 @@ fn what_is_strained_too_far_is_gone_with_its_energy_and_its_forces() {
         let mut noise = Noise(8);
         let moved = |&rest: &DVec3| {
             let by = noise.vector() * 0.011;
-            rest + if body.dimension == Dimension::Plane { by.with_z(0.0) } else { by }
+            rest + if body.dimension() == Dimension::Plane { by.with_z(0.0) } else { by }
         };
-        let state = State::at_rest(body.rest.iter().map(moved).collect());
+        let state = State::at_rest(body.rest().iter().map(moved).collect());
         let mut world = world(&body, &state, &ShapeBased::new(STIFFNESS), Kernel::Fast);
         world.show(Some(Field::Strain));
         let strains = world.snapshot().field;
@@ -82,7 +82,7 @@ fn what_is_strained_too_far_is_gone_with_its_energy_and_its_forces() {
             let (found, full) = (energies(&breaks, &state), energies(&never, &state));
             let length = |[i, j]: [u32; 2], at: &[DVec3]| at[i as usize].distance(at[j as usize]);
             let strain = |at: usize| match breaking.springs().get(at) {
-                Some(&ends) => length(ends, &state.position) / length(ends, &body.rest) - 1.0,
+                Some(&ends) => length(ends, &state.position) / length(ends, body.rest()) - 1.0,
                 None => strains[at],
             };
             let gone: Vec<_> = (0..found.len()).map(|at| strain(at) > LIMIT).collect();
@@ -112,9 +112,9 @@ fn what_is_strained_too_far_is_gone_with_its_energy_and_its_forces() {
             }
             // And it stays gone, without any strain.
             breaks.memory = next;
-            let rest = State::at_rest(body.rest.clone());
+            let rest = State::at_rest(body.rest().to_vec());
             let (_, again) = breaks.evaluate(&rest);
-            let width = breaking.breaks(&body).expect("a model that breaks");
+            let width = breaking.properties(&body).breakable.expect("a model that breaks");
             let told: Vec<_> = again.chunks(width).map(|numbers| numbers[width - 1] == 1.0).collect();
             assert_eq!(told, gone, "{breaking:?}");
         }
@@ -125,7 +125,7 @@ fn what_is_strained_too_far_is_gone_with_its_energy_and_its_forces() {
 #[test]
 fn the_residual_is_that_of_what_holds() {
     let body = lattice(2, 0.1);
-    let mut state = State::at_rest(body.rest.clone());
+    let mut state = State::at_rest(body.rest().to_vec());
     state.position[0] = DVec3::new(-3e5, 2e5, -1e5);
     let breaks = ShapeBased { breaks_at: Some(LIMIT), ..ShapeBased::new(STIFFNESS) };
     for kernel in [Kernel::Fast, Kernel::Reference] {
@@ -155,7 +155,7 @@ fn pieces_keep_all_momenta_and_the_energy_falls_by_what_broke() {
                 broken = now.broken;
             }
             let after = world.diagnostics();
-            let mass = body.mass.iter().sum::<f64>();
+            let mass = body.mass().iter().sum::<f64>();
             assert!(broken > 0.0, "{breaking:?}");
             assert!(after.energy < 0.995 * before.energy, "{breaking:?}: {} {}", before.energy, after.energy);
             let momentum = (after.momentum - before.momentum).length();

@@ -2,7 +2,7 @@
 
 use super::support::{Noise, Remembering, floor, free, lattice, mass_spring, shape_based, world};
 use glam::DVec3;
-use localshape_sim::{Body, Dimension, FrictionOf, IndexLists, Obstacle, Solids, Springs, State, Surroundings};
+use localshape_sim::{Body, FrictionOf, IndexLists, Obstacle, Springs, State, Surroundings};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -13,13 +13,13 @@ fn a_free_element_breathes_at_exactly_its_frequency() {
     let (body, amplitude, stiffness) = (lattice(1, 0.1), 0.2, 1e4);
     let step = TAU / f64::sqrt(stiffness) / 50.0;
     let centre = DVec3::splat(0.05);
-    let scaled = body.rest.iter().map(|&rest| centre + (rest - centre) * (1.0 + amplitude)).collect();
+    let scaled = body.rest().iter().map(|&rest| centre + (rest - centre) * (1.0 + amplitude)).collect();
     let mut world = free(&body, State::at_rest(scaled), &shape_based(stiffness, 0.0), step);
     let theta = (1.0 - stiffness * step * step / 2.0).acos();
     for n in 1..=500 {
         world.advance(1);
         let expected = amplitude * ((f64::from(n) + 0.5) * theta).cos() / (theta / 2.0).cos();
-        for (&now, &rest) in world.state().position.iter().zip(&body.rest) {
+        for (&now, &rest) in world.state().position.iter().zip(body.rest()) {
             let error = (now - centre) - (rest - centre) * (1.0 + expected);
             assert!(error.length() < 2e-15 * f64::from(n), "step {n}: {error}");
         }
@@ -35,10 +35,10 @@ fn a_body_falls_as_the_sum_of_its_steps() {
         &shape_based(1e4, 20.0) as &dyn localshape_sim::model::ElasticModel,
         &mass_spring(&body, 1e4, 20.0, Springs::All),
     ] {
-        let mut world = world(&body, State::at_rest(body.rest.clone()), model, step, around.clone());
+        let mut world = world(&body, State::at_rest(body.rest().to_vec()), model, step, around.clone());
         world.advance(1000);
         let fall = g * step * step * 1000.0 * 1001.0 / 2.0;
-        for (now, rest) in world.state().position.iter().zip(&body.rest) {
+        for (now, rest) in world.state().position.iter().zip(body.rest()) {
             assert!((rest.y - now.y - fall).abs() < 1e-12, "{} {}", rest.y - now.y, fall);
         }
     }
@@ -50,7 +50,7 @@ fn rebounds_reach_the_restitution_squared_of_the_height() {
     let mut elements = IndexLists::default();
     elements.push(&[0, 1]);
     let rest = vec![DVec3::ZERO, DVec3::X];
-    let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, Solids::Ordered, None));
+    let body = Arc::new(Body::builder(rest).elements(elements).build().expect("a body"));
     let around = Surroundings {
         gravity: DVec3::new(0.0, -9.8, 0.0),
         obstacles: vec![floor(0.5, 0.0)],
@@ -92,8 +92,8 @@ fn friction_brakes_by_the_impulse_of_the_rebound_and_never_reverses() {
 fn momentum_and_angular_momentum_stay_to_round_off() {
     let body = lattice(3, 0.1);
     let mut noise = Noise(7);
-    let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect();
-    let velocity = body.rest.iter().map(|_| noise.vector()).collect();
+    let position: Vec<_> = body.rest().iter().map(|&rest| rest + noise.vector() * 0.02).collect();
+    let velocity = body.rest().iter().map(|_| noise.vector()).collect();
     let start = State::new(position, velocity);
     let step = TAU / 100.0 / 50.0;
     let spring = mass_spring(&body, 1e4, 0.0, Springs::EdgesOneDiagonal);
@@ -129,12 +129,12 @@ fn the_highest_frequencies_are_those_of_an_independent_implementation() {
     ];
     for (model, expected) in cases {
         let mut noise = Noise(3);
-        let mut mode: Vec<_> = body.rest.iter().map(|_| noise.vector()).collect();
-        let mut worker = Remembering::new(&body, model.as_ref(), &State::at_rest(body.rest.clone()));
+        let mut mode: Vec<_> = body.rest().iter().map(|_| noise.vector()).collect();
+        let mut worker = Remembering::new(&body, model.as_ref(), &State::at_rest(body.rest().to_vec()));
         let mut squared = 0.0;
         for _ in 0..1500 {
             let h = 1e-7;
-            let state = State::at_rest(body.rest.iter().zip(&mode).map(|(&rest, &mode)| rest + mode * h).collect());
+            let state = State::at_rest(body.rest().iter().zip(&mode).map(|(&rest, &mode)| rest + mode * h).collect());
             let forces = worker.follow(&state);
             let length = forces.iter().map(|f| f.length_squared()).sum::<f64>().sqrt();
             squared = length / h;
@@ -149,7 +149,7 @@ fn the_highest_frequencies_are_those_of_an_independent_implementation() {
 #[test]
 fn the_error_of_semi_implicit_euler_falls_with_the_step() {
     let body = lattice(2, 0.1);
-    let twisted = body.rest.iter().map(|&rest| {
+    let twisted = body.rest().iter().map(|&rest| {
         let angle = 3.0 * rest.z;
         let (x, y) = (rest.x - 0.1, rest.y - 0.1);
         DVec3::new(x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos(), rest.z * 1.2)
@@ -180,7 +180,7 @@ fn a_step_is_stable_up_to_two_over_the_highest_frequency() {
     let growth = |part_of_limit: f64| {
         let step = part_of_limit * 2.0 / (2.7585 * f64::sqrt(stiffness));
         let mut noise = Noise(4);
-        let position = body.rest.iter().map(|&rest| rest + noise.vector() * 1e-7).collect();
+        let position = body.rest().iter().map(|&rest| rest + noise.vector() * 1e-7).collect();
         let mut world = free(&body, State::at_rest(position), &model, step);
         let before = world.snapshot().diagnostics.shape_error;
         world.advance(300);

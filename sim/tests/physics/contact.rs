@@ -83,7 +83,7 @@ fn a_turning_floor_turns_its_normal() {
     assert!((position - inside - normal * 0.01).length() < 1e-12, "{position}");
     assert!((velocity - DVec3::Z - normal * tilt).length() < 1e-6, "{velocity}");
     let body = lattice(2, 0.1);
-    let start = State::at_rest(body.rest.iter().map(|&at| at + DVec3::new(1.2, 0.01, 0.0)).collect());
+    let start = State::at_rest(body.rest().iter().map(|&at| at + DVec3::new(1.2, 0.01, 0.0)).collect());
     let ends = [Kernel::Fast, Kernel::Reference].map(|kernel| {
         let gravity = DVec3::Y * -9.8;
         let around = Surroundings { gravity, obstacles: vec![tilting.clone()], ..Surroundings::default() };

@@ -13,13 +13,15 @@ use std::sync::Arc;
 
 const YOUNG: f64 = 1e4;
 
-type Model = Box<dyn ElasticModel>;
+type Model = Arc<dyn ElasticModel>;
 
 type Make = fn(Parameters, &Body) -> Result<Model, Misfit>;
 
-const LINEAR: Make = |parameters, body| linear::Parameters(parameters).model(body);
-const COROTATIONAL: Make = |parameters, body| corotational::Parameters(parameters).model(body);
-const NEO_HOOKEAN: Make = |parameters, body| neo_hookean::Parameters(parameters).model(body);
+const LINEAR: Make = |parameters, body| ModelParameters::from(linear::Parameters(parameters)).resolve(body, None);
+const COROTATIONAL: Make =
+    |parameters, body| ModelParameters::from(corotational::Parameters(parameters)).resolve(body, None);
+const NEO_HOOKEAN: Make =
+    |parameters, body| ModelParameters::from(neo_hookean::Parameters(parameters)).resolve(body, None);
 
 fn made(make: Make, body: &Body, poisson: f64, damping_ratio: f64) -> Model {
     let (poisson, damping_ratio) = (Some(poisson), Some(damping_ratio).filter(|&ratio| ratio > 0.0));
@@ -71,7 +73,7 @@ fn block(cells: Cells, count: [u32; 3], irregular: f64) -> Arc<Body> {
         }
     }
     let (dimension, mass) = (if in_plane { Dimension::Plane } else { Dimension::Space }, vec![1.0; rest.len()]);
-    Arc::new(Body::new(dimension, rest, mass, elements, Solids::Ordered, None))
+    Arc::new(Body::builder(rest).dimension(dimension).elements(elements).masses(mass).build().expect("a body"))
 }
 
 /// A regular tetrahedron of this side (m), turned.
@@ -80,7 +82,7 @@ fn regular(side: f64) -> Arc<Body> {
     let turn = Noise(4).rotation();
     let rest: Vec<_> = corners.iter().map(|&corner| turn * corner * (side / 8.0_f64.sqrt())).collect();
     let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
-    let body = Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None);
+    let body = Body::builder(rest).elements(elements).build().expect("a body");
     assert!(volumes_at_rest(&body)[0] > 0.0);
     Arc::new(body)
 }
@@ -99,7 +101,7 @@ fn matrix(noise: &mut Noise, dimension: Dimension) -> DMat3 {
 }
 
 fn mapped(body: &Body, map: DMat3) -> State {
-    State::at_rest(body.rest.iter().map(|&rest| map * rest).collect())
+    State::at_rest(body.rest().iter().map(|&rest| map * rest).collect())
 }
 
 fn squares(matrix: DMat3) -> f64 {
@@ -119,12 +121,12 @@ fn energies_of_affine_maps_are_those_of_the_material() {
         let body = block(cells, [2, 1, 2], irregular);
         let volume: f64 = volumes_at_rest(&body).iter().sum();
         let material = Material { young: YOUNG, poisson: 0.3 };
-        let (mu, lambda) = (material.shear(), material.lame(body.dimension));
-        let d = if body.dimension == Dimension::Plane { 2.0 } else { 3.0 };
+        let (mu, lambda) = (material.shear(), material.lame(body.dimension()));
+        let d = if body.dimension() == Dimension::Plane { 2.0 } else { 3.0 };
         for scale in [1e-3, 0.3, 1.0] {
-            let f = DMat3::IDENTITY + matrix(&mut noise, body.dimension) * scale;
+            let f = DMat3::IDENTITY + matrix(&mut noise, body.dimension()) * scale;
             let strain = (f + f.transpose()) * 0.5 - DMat3::IDENTITY;
-            let r = match body.dimension {
+            let r = match body.dimension() {
                 Dimension::Plane => {
                     let (cosine, sine) = (f.x_axis.x + f.y_axis.y, f.x_axis.y - f.y_axis.x);
                     DMat3::from_rotation_z(libm::atan2(sine, cosine))
@@ -164,14 +166,14 @@ fn elements_pass_the_patch_test() {
         let body = block(cells, [3, 3, 3], 0.2);
         let inner: Vec<usize> = (0..body.len())
             .filter(|&node| {
-                let axes = if body.dimension == Dimension::Plane { 2 } else { 3 };
+                let axes = if body.dimension() == Dimension::Plane { 2 } else { 3 };
                 let at = [node % 4, node / 4 % 4, node / 16];
                 at[..axes].iter().all(|&at| at == 1 || at == 2)
             })
             .collect();
         assert!(inner.len() >= 4);
         for (poisson, scale) in [(0.0, 0.01), (0.3, 0.01), (0.3, 0.5)] {
-            let state = mapped(&body, DMat3::IDENTITY + matrix(&mut noise, body.dimension) * scale);
+            let state = mapped(&body, DMat3::IDENTITY + matrix(&mut noise, body.dimension()) * scale);
             for model in all(&body, poisson, 0.0) {
                 let forces = forces(&body, model.as_ref(), &state);
                 let most = inner.iter().map(|&node| forces[node].length()).fold(0.0, f64::max);
@@ -192,10 +194,10 @@ fn small_strains_have_one_law() {
     for (cells, irregular) in CELLS.into_iter().flat_map(|cells| [(cells, 0.0), (cells, 0.15)]) {
         for poisson in [0.0, 0.3, 0.49] {
             let body = block(cells, [2, 2, 1], irregular);
-            let flat = |v: DVec3| if body.dimension == Dimension::Plane { v.with_z(0.0) } else { v };
+            let flat = |v: DVec3| if body.dimension() == Dimension::Plane { v.with_z(0.0) } else { v };
             let mut noise = Noise(2);
-            let moved = body.rest.iter().map(|&rest| rest + flat(noise.vector()) * SMALL).collect();
-            let (rest, moved) = (State::at_rest(body.rest.clone()), State::at_rest(moved));
+            let moved = body.rest().iter().map(|&rest| rest + flat(noise.vector()) * SMALL).collect();
+            let (rest, moved) = (State::at_rest(body.rest().to_vec()), State::at_rest(moved));
             let [linear, others @ ..] = all(&body, poisson, 0.0);
             let expected = forces(&body, linear.as_ref(), &moved);
             for model in others {
@@ -244,7 +246,7 @@ fn linear_elements_take_rotation_for_strain() {
         let state = mapped(&body, DMat3::from_rotation_z(angle));
         let energy = Remembering::new(&body, model.as_ref(), &state).report(&state).0.energy.expect("an energy");
         let strain = angle.cos() - 1.0;
-        let density = (2.0 * material.shear() + 2.0 * material.lame(body.dimension)) * strain * strain;
+        let density = (2.0 * material.shear() + 2.0 * material.lame(body.dimension())) * strain * strain;
         assert!((energy / (0.008 * density) - 1.0).abs() < 1e-9, "{angle}: {energy}");
     }
 }
@@ -267,9 +269,9 @@ fn degenerate_and_inverted_elements_end_well() {
             for (disorder, model) in [0.0, 1e-3].into_iter().flat_map(|off| all(&body, poisson, 0.2).map(|m| (off, m)))
             {
                 let mut noise = Noise(7);
-                let flat = |v: DVec3| if body.dimension == Dimension::Plane { v.with_z(0.0) } else { v };
+                let flat = |v: DVec3| if body.dimension() == Dimension::Plane { v.with_z(0.0) } else { v };
                 let place = |&rest: &DVec3| flat(map(rest) + noise.vector() * disorder);
-                let start = State::at_rest(body.rest.iter().map(place).collect());
+                let start = State::at_rest(body.rest().iter().map(place).collect());
                 let found = forces(&body, model.as_ref(), &start);
                 assert!(found.iter().all(|force| force.is_finite()), "{model:?} {cells:?} {name}");
                 let mut world = free(&body, start, model.as_ref(), 2e-3);
@@ -291,9 +293,9 @@ fn mirrored_elements_turn_back() {
         let body = block(cells, [1, 1, 1], 0.05);
         for model in [made(COROTATIONAL, &body, 0.2, 0.2), made(NEO_HOOKEAN, &body, 0.2, 0.2)] {
             let mut noise = Noise(7);
-            let flat = |v: DVec3| if body.dimension == Dimension::Plane { v.with_z(0.0) } else { v };
+            let flat = |v: DVec3| if body.dimension() == Dimension::Plane { v.with_z(0.0) } else { v };
             let place = |&rest: &DVec3| flat(rest * DVec3::new(-1.0, 1.0, 1.0) + noise.vector() * 1e-2);
-            let mut world = free(&body, State::at_rest(body.rest.iter().map(place).collect()), model.as_ref(), 2e-3);
+            let mut world = free(&body, State::at_rest(body.rest().iter().map(place).collect()), model.as_ref(), 2e-3);
             world.advance(20_000);
             let d = world.diagnostics();
             assert!(d.turned_over == 0 && d.elastic < 1e-9 * YOUNG, "{model:?} {cells:?}: {d:?}");
@@ -318,11 +320,11 @@ fn predicted_steps_are_the_largest_stable_ones() {
                 let largest = Stability::of(&body, model.as_ref(), integrator, &[], 1.0).largest;
                 let grows = |share: f64| {
                     let mut noise = Noise(12);
-                    let flat = |v: DVec3| if body.dimension == Dimension::Plane { v.with_z(0.0) } else { v };
-                    let start = body.rest.iter().map(|&rest| rest + flat(noise.vector()) * 1e-9).collect();
+                    let flat = |v: DVec3| if body.dimension() == Dimension::Plane { v.with_z(0.0) } else { v };
+                    let start = body.rest().iter().map(|&rest| rest + flat(noise.vector()) * 1e-9).collect();
                     let mut world = stepped(&body, State::at_rest(start), model.as_ref(), integrator, share * largest);
                     world.advance(1500);
-                    let far = world.state().position.iter().zip(&body.rest).map(|(p, rest)| p.distance(*rest));
+                    let far = world.state().position.iter().zip(body.rest()).map(|(p, rest)| p.distance(*rest));
                     world.status() != Status::Ok || far.fold(0.0, f64::max) > 1e-5
                 };
                 assert!(!grows(0.99) && grows(1.01), "{model:?} {cells:?} {integrator:?}: {largest}");
@@ -349,9 +351,9 @@ fn cantilevers_bend_as_known() {
             let node = length + (length + 1) * (y + side * z);
             given[node as usize].z = load * share(y) * share(z) / f64::from(cells * cells);
         }
-        let held: Vec<bool> = body.rest.iter().map(|rest| rest.x == 0.0).collect();
+        let held: Vec<bool> = body.rest().iter().map(|rest| rest.x == 0.0).collect();
         let stiffness = |u: &[DVec3]| -> Vec<DVec3> {
-            let moved = State::at_rest(body.rest.iter().zip(u).map(|(rest, u)| *rest + *u).collect());
+            let moved = State::at_rest(body.rest().iter().zip(u).map(|(rest, u)| *rest + *u).collect());
             let forces = forces(&body, model.as_ref(), &moved);
             forces.iter().zip(&held).map(|(force, &held)| if held { DVec3::ZERO } else { -*force }).collect()
         };
@@ -392,10 +394,10 @@ fn thin_elements_are_damped_without_their_rigid_motion() {
     const DAMPING: f64 = 3.0;
     let mut noise = Noise(5);
     let turn = noise.rotation();
-    let corners = |of: &Body| of.rest.iter().map(|&rest| turn * (rest * DVec3::new(1.0, 0.01, 0.01))).collect();
+    let corners = |of: &Body| of.rest().iter().map(|&rest| turn * (rest * DVec3::new(1.0, 0.01, 0.01))).collect();
     let [cube, four] = [lattice(1, 1.0), regular(1.0)].map(|of| {
-        let Body { mass, elements, .. } = Body::clone(&of);
-        Arc::new(Body::new(Dimension::Space, corners(&of), mass, elements, Solids::Ordered, None))
+        let body = Body::builder(corners(&of)).elements(of.elements().clone()).masses(of.mass().to_vec());
+        Arc::new(body.build().expect("a body"))
     });
     let given = Parameters { young: YOUNG, damping: Some(DAMPING), ..Parameters::default() };
     let damping_of = DampingReading::Deformation;
@@ -404,13 +406,13 @@ fn thin_elements_are_damped_without_their_rigid_motion() {
         let mut models: Vec<Model> = vec![
             LINEAR(given.clone(), &body).expect("it fits"),
             NEO_HOOKEAN(given.clone(), &body).expect("it fits"),
-            Box::new(shape),
+            Arc::new(shape),
         ];
         let material = Material { young: YOUNG, poisson: 0.0 };
-        models.extend(Metric::new(&body, material, DAMPING).ok().map(|metric| -> Model { Box::new(metric) }));
+        models.extend(Metric::new(&body, material, DAMPING).ok().map(|metric| -> Model { Arc::new(metric) }));
         let count = body.len() as f64;
-        let middle = body.rest.iter().sum::<DVec3>() / count;
-        let r: Vec<_> = body.rest.iter().map(|&rest| rest - middle).collect();
+        let middle = body.rest().iter().sum::<DVec3>() / count;
+        let r: Vec<_> = body.rest().iter().map(|&rest| rest - middle).collect();
         let spin = turn * DVec3::new(2.0, 0.3, -0.1);
         let rigid: Vec<_> = r.iter().map(|&r| DVec3::new(0.3, 0.2, 0.1) + spin.cross(r)).collect();
         let random: Vec<_> = r.iter().map(|_| noise.vector()).collect();
@@ -422,7 +424,7 @@ fn thin_elements_are_damped_without_their_rigid_motion() {
         let by_hand: Vec<_> = r.iter().zip(&random).map(|(&r, &v)| (v - drift - omega.cross(r)) * -DAMPING).collect();
         for (velocity, expected) in [(rigid, vec![DVec3::ZERO; r.len()]), (random, by_hand)] {
             for model in &models {
-                let found = forces(&body, model.as_ref(), &State::new(body.rest.clone(), velocity.clone()));
+                let found = forces(&body, model.as_ref(), &State::new(body.rest().to_vec(), velocity.clone()));
                 let far = found.iter().zip(&expected).fold(0.0, |far: f64, (a, b)| far.max(a.distance(*b)));
                 assert!(far < 1e-9, "{model:?}: {far:e}");
             }
@@ -435,14 +437,17 @@ fn thin_elements_are_damped_without_their_rigid_motion() {
 fn bodies_and_numbers_that_do_not_fit_are_told() {
     let corners =
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.4, 0.5, 1.0], [0.4, 0.5, 2.0]];
+    let flat = corners.map(|[x, y, _]| [x, y, 0.0]);
     let (plane, space) = (Dimension::Plane, Dimension::Space);
     let hexahedron = |moved: DVec3| {
         let cube = lattice(1, 1.0);
-        let mut rest = cube.rest.clone();
+        let mut rest = cube.rest().to_vec();
         rest[7] += moved;
-        Body::new(space, rest, vec![1.0; 8], cube.elements.clone(), Solids::Ordered, None)
+        Body::builder(rest).dimension(space).elements(cube.elements().clone()).build().expect("a body")
     };
-    let any_order = Body { kinds: vec![localshape_sim::ElementKind::Other], ..Body::clone(&lattice(1, 1.0)) };
+    let cube = lattice(1, 1.0);
+    let any_order = Body::builder(cube.rest().to_vec()).elements(cube.elements().clone()).solids(Solids::Convex);
+    let any_order = any_order.build().expect("a body");
     let quadrilateral =
         |x: f64| body(plane, &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [x, x, 0.0], [0.0, 1.0, 0.0]], &[&[0, 1, 2, 3]]);
     let in_space = "`corotational` takes tetrahedra and hexahedra; element 0 is";
@@ -453,7 +458,7 @@ fn bodies_and_numbers_that_do_not_fit_are_told() {
         (body(space, &corners, &[&[0, 1, 2]]), format!("{in_space} a triangle, which has no volume")),
         (Arc::new(any_order), format!("{in_space} a polyhedron of 8 nodes in any order")),
         (
-            body(plane, &corners, &[&[0, 1, 2], &[0, 1, 2, 3, 4]]),
+            body(plane, &flat, &[&[0, 1, 2], &[0, 1, 2, 3, 4]]),
             "`corotational` takes triangles and quadrilaterals; element 1 is a polygon of 5 nodes".into(),
         ),
         (Arc::new(hexahedron(DVec3::splat(-0.8))), "element 0 is folded".into()),
@@ -475,7 +480,8 @@ fn bodies_and_numbers_that_do_not_fit_are_told() {
         let json = serde_json::json!({ "kind": kind, "young": 1e4, "poisson": 0.3, "damping_ratio": 0.1 });
         let model = typed(json).expect("a model").resolve(&lattice(1, 0.1), None).expect("it fits");
         assert_eq!(model.material(&lattice(1, 0.1)), Some(Material { young: 1e4, poisson: 0.3 }));
-        assert!(model.damping() > 0.0 && model.stiffness() > 0.0);
+        let own = model.properties(&lattice(1, 0.1));
+        assert!(own.damping > 0.0 && own.stiffness > 0.0);
         assert!(typed(serde_json::json!({ "kind": kind, "young": 1e4, "stiffness": 1.0 })).is_err());
         assert!(typed(serde_json::json!({ "kind": kind })).is_err());
     }

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 fn start(map: impl Fn(DVec3) -> DVec3, disorder: f64) -> State {
     let body = lattice(1, 1.0);
     let mut noise = Noise(21);
-    State::at_rest(body.rest.iter().map(|&rest| map(rest - DVec3::splat(0.5)) + noise.vector() * disorder).collect())
+    State::at_rest(body.rest().iter().map(|&rest| map(rest - DVec3::splat(0.5)) + noise.vector() * disorder).collect())
 }
 
 fn after_long(model: &dyn localshape_sim::model::ElasticModel, start: State) -> localshape_sim::Snapshot {
@@ -76,7 +76,7 @@ fn polygons_recover_from_a_point_a_line_a_mirror_image_and_half_a_turn() {
         for (name, map) in starts {
             for disorder in [0.0, 1e-3] {
                 let mut noise = Noise(8);
-                let start = body.rest.iter().map(|&rest| map(rest) + noise.vector().with_z(0.0) * disorder).collect();
+                let start = body.rest().iter().map(|&rest| map(rest) + noise.vector().with_z(0.0) * disorder).collect();
                 let model = shape_based(1e4, 40.0);
                 let mut world = free(&body, State::at_rest(start), &model, TAU / 100.0 / 50.0);
                 world.advance(5000);

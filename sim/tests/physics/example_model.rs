@@ -1,4 +1,4 @@
-use localshape_sim::model::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Vectorised};
+use localshape_sim::model::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Properties, Vectorised};
 use localshape_sim::{Body, IndexLists, Springs};
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ pub struct Rods {
 }
 
 impl ElasticModel for Rods {
-    fn stiffness(&self) -> f64 {
-        self.stiffness
+    fn properties(&self, _: &Body) -> Properties {
+        Properties::new("rods", self.stiffness)
     }
 
     fn vectorised(&self) -> Option<&dyn Vectorised> {

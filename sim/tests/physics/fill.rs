@@ -11,26 +11,27 @@ use localshape_sim::model::volume_springs::VolumeSprings;
 use localshape_sim::model::{ElasticModel, ModelParameters};
 use localshape_sim::stability::Stability;
 use localshape_sim::{
-    Body, Crew, Dimension, IndexLists, Integrator, Kernel, Solids, Springs, State, Stepping, Surroundings, World,
+    Body, Crew, Dimension, IndexLists, Integrator, Kernel, Springs, State, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
 /// A block of cubes, with elements filled in part, of which each node has an equal share of the mass of 1 kg for each full one.
 fn filled(cells: u32, fill: impl Fn(usize) -> f64) -> Arc<Body> {
     let full = lattice(cells, 0.1);
-    let fill: Vec<f64> = (0..full.elements.len()).map(fill).collect();
+    let fill: Vec<f64> = (0..full.elements().len()).map(fill).collect();
     let mut mass = vec![0.0; full.len()];
-    for (nodes, part) in full.elements.iter().zip(&fill) {
+    for (nodes, part) in full.elements().iter().zip(&fill) {
         nodes.iter().for_each(|&node| mass[node as usize] += 0.125 * part);
     }
-    Arc::new(Body { mass, fill: Some(fill), ..Body::clone(&full) })
+    let body = Body::clone(&full).with_masses(mass).and_then(|body| body.with_fill(fill));
+    Arc::new(body.expect("parts"))
 }
 
 /// Deformed and moving.
 fn start(body: &Body) -> State {
     let mut noise = Noise(3);
-    let position = body.rest.iter().map(|&rest| rest + noise.vector() * 0.005).collect();
-    State::new(position, body.rest.iter().map(|_| noise.vector()).collect())
+    let position = body.rest().iter().map(|&rest| rest + noise.vector() * 0.005).collect();
+    State::new(position, body.rest().iter().map(|_| noise.vector()).collect())
 }
 
 /// A body half filled, with half the mass, moves like the full one, with the same bits.
@@ -42,7 +43,11 @@ fn a_body_that_is_half_filled_everywhere_moves_like_the_full_one() {
         let json = serde_json::json!({ "kind": kind, "stiffness": 1e4, "damping_ratio": 0.1 });
         let parameters: ModelParameters = serde_json::from_value(json).expect("a model");
         let [a, b] = [&full, &half].map(|body| parameters.resolve(body, None).expect("it fits"));
-        assert_eq!((a.damping(), a.shortest_period(&full)), (b.damping(), b.shortest_period(&half)));
+        let of = |model: &dyn ElasticModel, body: &Arc<Body>| {
+            let own = model.properties(body);
+            (own.damping, own.shortest_period(body))
+        };
+        assert_eq!(of(&*a, &full), of(&*b, &half));
         a
     };
     let gravity = DVec3::new(0.3, -9.8, 0.0);
@@ -72,7 +77,7 @@ fn a_body_that_is_half_filled_everywhere_moves_like_the_full_one() {
 #[test]
 fn elements_of_which_all_is_filled_are_full() {
     let given = filled(4, |_| 1.0);
-    let full = Arc::new(Body { fill: None, ..Body::clone(&given) });
+    let full = Arc::new(Body::clone(&given).with_fill(None).expect("full elements"));
     for case in cases(&full, 7.0) {
         let [a, b] = [&given, &full].map(|body| {
             let mut world = stepped(body, start(body), &*case.model, Integrator::SemiImplicitEuler, 2e-4);
@@ -92,9 +97,9 @@ fn evaluated(body: &Arc<Body>, model: &dyn ElasticModel, state: &State) -> (Vec<
 
 /// A body with one of its elements, all of which is filled.
 fn alone(body: &Body, element: usize) -> Arc<Body> {
-    let Body { dimension, rest, mass, elements, .. } = Body::clone(body);
-    let one = [&elements[element]].into_iter().collect();
-    Arc::new(Body::new(dimension, rest, mass, one, Solids::Ordered, None))
+    let one = [&body.elements()[element]].into_iter().collect();
+    let alone = Body::builder(body.rest().to_vec()).dimension(body.dimension()).elements(one);
+    Arc::new(alone.masses(body.mass().to_vec()).build().expect("a body"))
 }
 
 /// Every model on a body that is filled in part, beside the sum of its elements, and of its springs, each alone and full. A spring has the mean
@@ -102,8 +107,8 @@ fn alone(body: &Body, element: usize) -> Arc<Body> {
 #[test]
 fn every_model_is_in_proportion_to_what_is_filled() {
     let body = filled(3, |cell| [1.0, 0.35, 0.02, 0.8][cell % 4]);
-    let (fill, state) = (body.fill.clone().expect("parts"), start(&body));
-    let full = Arc::new(Body { fill: None, ..Body::clone(&body) });
+    let (fill, state) = (body.fill().expect("parts"), start(&body));
+    let full = Arc::new(Body::clone(&body).with_fill(None).expect("full elements"));
     type Sum = (Vec<DVec3>, f64);
     let add = |sum: &mut Sum, part: f64, (forces, energy): Sum| {
         sum.0.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force * part);
@@ -119,7 +124,7 @@ fn every_model_is_in_proportion_to_what_is_filled() {
     let springs = mass_spring(&body, 1e4, 7.0, Springs::EdgesFaceDiagonals);
     let of_springs = |with: &dyn Fn(MassSpring) -> Box<dyn ElasticModel>| {
         springs.springs.iter().fold(none(), |mut sum, &ends| {
-            let holds = |at: &usize| ends.iter().all(|end| body.elements[*at].contains(end));
+            let holds = |at: &usize| ends.iter().all(|end| body.elements()[*at].contains(end));
             let parts: Vec<_> = (0..fill.len()).filter(holds).map(|at| fill[at]).collect();
             let part = parts.iter().sum::<f64>() / parts.len() as f64;
             let one = with(MassSpring { springs: [ends].into(), ..springs.clone() });
@@ -168,15 +173,14 @@ fn every_model_is_in_proportion_to_what_is_filled() {
 fn parts_of_an_element_add_up() {
     let full = filled(2, |_| 1.0);
     let (mut elements, mut fill) = (IndexLists::default(), Vec::new());
-    for (at, nodes) in full.elements.iter().enumerate() {
+    for (at, nodes) in full.elements().iter().enumerate() {
         let part = [0.3, 0.25, 0.9][at % 3];
         elements.push(nodes);
         elements.push(nodes);
         fill.extend([part, 1.0 - part]);
     }
-    let Body { dimension, rest, mass, .. } = Body::clone(&full);
-    let twice = Body::new(dimension, rest, mass, elements, Solids::Ordered, None);
-    let twice = Arc::new(Body { fill: Some(fill), ..twice });
+    let twice = Body::builder(full.rest().to_vec()).dimension(full.dimension()).elements(elements).fill(fill);
+    let twice = Arc::new(twice.masses(full.mass().to_vec()).build().expect("a body"));
     for kernel in [Kernel::Fast, Kernel::Reference] {
         let [a, b] = [&full, &twice].map(|body| {
             let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 2e-4) };
@@ -250,7 +254,7 @@ fn slivers_do_not_shorten_the_real_step() {
             let step = 0.95 * limit.stretched.unwrap_or(limit.largest).min(limit.largest);
             let mut noise = Noise(4);
             // A small deformation: the limit is about the vicinity of rest.
-            let position = body.rest.iter().map(|&rest| rest + noise.vector() * 1e-5).collect();
+            let position = body.rest().iter().map(|&rest| rest + noise.vector() * 1e-5).collect();
             let drift = DVec3::new(0.3, -0.2, 0.1);
             let velocity = vec![drift; body.len()];
             let mut world = stepped(&body, State::new(position, velocity), &**model, integrator, step);
@@ -296,8 +300,9 @@ fn bodies_filled_in_part_have_the_same_bits_for_1_2_and_8_threads() {
 /// A block of full cubes with elements of this relative stiffness.
 fn stiffened(cells: u32, stiffness: impl Fn(usize) -> f64) -> Arc<Body> {
     let full = filled(cells, |_| 1.0);
-    let stiffness = (0..full.elements.len()).map(stiffness).collect();
-    Arc::new(Body { fill: None, stiffness: Some(stiffness), ..Body::clone(&full) })
+    let stiffness = (0..full.elements().len()).map(stiffness).collect();
+    let full = Body::clone(&full).with_fill(None).expect("full elements");
+    Arc::new(full.with_stiffness(Some(stiffness)).expect("parts"))
 }
 
 /// Elements of twice the stiffness move like those of a model of twice the stiffness and the damping, with the same bits, and have
@@ -353,7 +358,7 @@ fn the_stiffest_element_bounds_the_step() {
             assert!(certain <= found.largest * (1.0 + 1e-3), "{model:?}: {found:?} {certain}");
             let step = 0.95 * found.stretched.unwrap_or(found.largest).min(found.largest);
             let mut noise = Noise(4);
-            let position = body.rest.iter().map(|&rest| rest + noise.vector() * 1e-5).collect();
+            let position = body.rest().iter().map(|&rest| rest + noise.vector() * 1e-5).collect();
             let at_rest = vec![DVec3::ZERO; body.len()];
             let mut world = stepped(&body, State::new(position, at_rest), &**model, integrator, step);
             let before = world.diagnostics();
@@ -368,7 +373,7 @@ fn the_stiffest_element_bounds_the_step() {
 fn what_is_filled_of_an_element_is_shared_by_its_nodes() {
     let rest = (0..6).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0)).collect();
     let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
-    let body = Body::new(Dimension::Plane, rest, vec![1.0; 6], elements, Solids::Ordered, None);
-    let body = Body { fill: Some(vec![0.5, 1.0 / 256.0]), ..body };
+    let body = Body::builder(rest).dimension(Dimension::Plane).elements(elements).fill(vec![0.5, 1.0 / 256.0]);
+    let body = body.build().expect("a body");
     assert_eq!(node_volumes(&body), [128.0, 128.0, 129.0, 129.0, 1.0, 1.0].map(|share| share / 1024.0));
 }

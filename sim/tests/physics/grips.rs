@@ -1,11 +1,12 @@
 //! Kinematic constraints: nodes that are held, gripped, dragged and released.
 
-use super::conformance::cases;
+use super::conformance::{STIFFNESS, of_stiffness};
 use super::support::{bricks, lattice, shape_based, world};
 use glam::{DQuat, DVec3};
-use localshape_sim::model::ModelParameters;
+use localshape_sim::model::ElasticModel;
+use localshape_sim::model::metric::Metric;
 use localshape_sim::{
-    Ease, Grip, Integrator, Kernel, Key, Motion, Offset, State, Status, Stepping, Surroundings, World,
+    Ease, Grip, Integrator, Kernel, Key, Material, Motion, Offset, State, Status, Stepping, Surroundings, World,
 };
 
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.8, 0.0);
@@ -17,18 +18,18 @@ fn around(grip: Grip) -> Surroundings {
 #[test]
 fn held_nodes_stay_where_they_are_and_the_body_hangs_from_them() {
     let body = lattice(2, 0.1);
-    let held: Vec<u32> = (0..27).filter(|&node| body.rest[node as usize].y > 0.19).collect();
+    let held: Vec<u32> = (0..27).filter(|&node| body.rest()[node as usize].y > 0.19).collect();
     let grip = Grip { nodes: held.clone(), from: 0.0, until: f64::INFINITY, motion: Motion::Still };
-    let mut start = State::at_rest(body.rest.clone());
+    let mut start = State::at_rest(body.rest().to_vec());
     start.velocity.fill(DVec3::new(0.3, 0.2, 0.1));
     let mut world = world(&body, start, &shape_based(1e4, 40.0), 1e-3, around(grip));
     world.advance(5000);
     for &node in &held {
-        assert_eq!(world.state().position[node as usize], body.rest[node as usize]);
+        assert_eq!(world.state().position[node as usize], body.rest()[node as usize]);
         assert_eq!(world.state().velocity[node as usize], DVec3::ZERO);
     }
     // At rest the held nodes carry the weight of all others: the springs below have k times their sag.
-    let sag = body.rest[0].y - world.state().position[0].y;
+    let sag = body.rest()[0].y - world.state().position[0].y;
     assert!((1e-4..0.02).contains(&sag), "{sag}");
     assert!(world.state().velocity.iter().all(|v| v.length() < 1e-6));
 }
@@ -44,7 +45,7 @@ fn dragged_nodes_follow_the_hand_and_keep_its_speed_when_let_go() {
     let nodes: Vec<u32> = (0..8).collect();
     let grip = Grip { nodes, from: 0.1, until: 0.3, motion };
     let step = 1e-3;
-    let mut world = world(&body, State::at_rest(body.rest.clone()), &shape_based(1e4, 0.0), step, around(grip));
+    let mut world = world(&body, State::at_rest(body.rest().to_vec()), &shape_based(1e4, 0.0), step, around(grip));
     world.advance(100);
     let before = world.state().position.clone();
     world.advance(100);
@@ -79,10 +80,10 @@ fn one_hand_takes_over_from_another_and_may_pull_far() {
     let pull = Grip { nodes: vec![1, 3, 5, 7], from: 0.0, until: 0.5, motion: out(0.5, 2.0) };
     let hold = Grip { nodes: vec![1, 3, 5, 7], from: 0.5, until: 0.6, motion: Motion::Still };
     let around = Surroundings { grips: vec![left, pull, hold], ..Surroundings::default() };
-    let mut world = world(&body, State::at_rest(body.rest.clone()), &shape_based(1e4, 0.0), 1e-3, around);
+    let mut world = world(&body, State::at_rest(body.rest().to_vec()), &shape_based(1e4, 0.0), 1e-3, around);
     world.advance(500);
     let drawn = world.state().position.clone();
-    assert!((drawn[1] - body.rest[1] - DVec3::X * 2.0).length() < 1e-12);
+    assert!((drawn[1] - body.rest()[1] - DVec3::X * 2.0).length() < 1e-12);
     world.advance(100);
     assert_eq!(world.state().position, drawn, "the second hand holds them where the first has left them");
     world.advance(500);
@@ -95,7 +96,7 @@ fn one_hand_takes_over_from_another_and_may_pull_far() {
 #[test]
 fn nodes_that_are_held_have_no_speed_of_their_own() {
     let body = bricks([3, 1, 2], DVec3::splat(0.1));
-    let side = |y: f64| (0..body.len() as u32).filter(|&node| body.rest[node as usize].y == y).collect::<Vec<_>>();
+    let side = |y: f64| (0..body.len() as u32).filter(|&node| body.rest()[node as usize].y == y).collect::<Vec<_>>();
     let end = Offset { shift: DVec3::X * 0.2, rotation: DVec3::ZERO };
     let keys = vec![Key { time: 0.0, offset: Offset::default() }, Key { time: 1.0, offset: end }];
     let motion = Motion::Keys { keys, ease: Ease::Smooth, repeat: false };
@@ -104,9 +105,7 @@ fn nodes_that_are_held_have_no_speed_of_their_own() {
         Grip { nodes: side(0.1), from: 0.0, until: f64::INFINITY, motion },
     ];
     let around = Surroundings { grips, ..Surroundings::default() };
-    let stiff = serde_json::json!({ "kind": "metric", "young": 1e5, "poisson": 0.49 });
-    let stiff: ModelParameters = serde_json::from_value(stiff).expect("a model");
-    let stiff = stiff.resolve(&body, None).expect("it fits");
+    let stiff = Metric::new(&body, Material { young: 1e5, poisson: 0.49 }, 0.0).expect("it fits");
     let integrators = [
         Integrator::SemiImplicitEuler,
         Integrator::ExplicitEuler,
@@ -116,10 +115,9 @@ fn nodes_that_are_held_have_no_speed_of_their_own() {
         Integrator::DormandPrince,
         Integrator::BackwardEuler,
     ];
-    let cases = cases(&body, 0.0);
     // Other models a thousand times as stiff as their step bears.
-    let scaled: Vec<_> = cases.iter().filter_map(|case| case.model.scaled(1e6, 1.0)).collect();
-    for model in scaled.iter().map(|model| &**model).chain([&*stiff]) {
+    let cases = of_stiffness(1e6 * STIFFNESS, &body, 0.0);
+    for model in cases.iter().map(|case| &*case.model).chain([&stiff as &dyn ElasticModel]) {
         let takes = |integrator: &Integrator| integrator.refusal(model, &body).is_none();
         for (integrator, kernel) in integrators
             .into_iter()
@@ -127,17 +125,17 @@ fn nodes_that_are_held_have_no_speed_of_their_own() {
             .flat_map(|integrator| [(integrator, Kernel::Fast), (integrator, Kernel::Reference)])
         {
             let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-2) };
-            let mut world = World::new(&body, State::at_rest(body.rest.clone()), model, around.clone(), stepping);
+            let mut world = World::new(&body, State::at_rest(body.rest().to_vec()), model, around.clone(), stepping);
             world.advance(100);
             let text = format!("{integrator:?} {kernel:?} {model:?}");
             assert_eq!(world.status(), Status::Ok, "{text}");
-            for (now, rest) in world.state().position.iter().zip(&body.rest) {
+            for (now, rest) in world.state().position.iter().zip(body.rest()) {
                 assert!(now.distance(*rest + DVec3::X * (2.0 * rest.y)) < 1e-14, "{text}");
             }
         }
     }
     // W = μ/4 (2γ² + γ⁴) + λ/8 γ⁴.
-    let mut world = world(&body, State::at_rest(body.rest.clone()), &*stiff, 1e-3, around);
+    let mut world = world(&body, State::at_rest(body.rest().to_vec()), &stiff, 1e-3, around);
     world.advance(1000);
     let (shear, ratio) = (1e5 / (2.0 * 1.49), 2.0 * 0.49 / (1.0 - 2.0 * 0.49));
     let density = shear * (0.25 * (2.0 * 4.0 + 16.0) + 0.125 * ratio * 16.0);

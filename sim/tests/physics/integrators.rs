@@ -7,8 +7,7 @@ use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, Report};
 use localshape_sim::{
-    Body, Dimension, Ease, Grip, Integrator, Kernel, Key, Motion, Offset, Solids, Springs, State, Stepping,
-    Surroundings, World,
+    Body, Dimension, Ease, Grip, Integrator, Kernel, Key, Motion, Offset, Springs, State, Stepping, Surroundings, World,
 };
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -22,7 +21,7 @@ const HIGH: [Integrator; 2] = [Integrator::Pefrl, Integrator::RungeKutta];
 fn breathing(integrator: Integrator, step: f64, steps: usize, a: f64) -> Vec<f64> {
     let body = lattice(1, 0.1);
     let centre = DVec3::splat(0.05);
-    let scaled = body.rest.iter().map(|&rest| centre + (rest - centre) * (1.0 + a)).collect();
+    let scaled = body.rest().iter().map(|&rest| centre + (rest - centre) * (1.0 + a)).collect();
     let mut world = stepped(&body, State::at_rest(scaled), &shape_based(STIFFNESS, 0.0), integrator, step);
     let scale = |world: &World| (world.state().position[7] - centre).x / 0.05 - 1.0;
     (0..steps)
@@ -60,7 +59,7 @@ fn velocity_verlet_keeps_the_amplitude_exactly() {
 #[test]
 fn errors_fall_with_the_order_of_the_method() {
     let body = lattice(2, 0.1);
-    let twisted = body.rest.iter().map(|&rest| {
+    let twisted = body.rest().iter().map(|&rest| {
         let (x, y, angle) = (rest.x - 0.1, rest.y - 0.1, 3.0 * rest.z);
         DVec3::new(x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos(), rest.z * 1.2)
     });
@@ -87,7 +86,7 @@ fn errors_fall_with_the_order_of_the_method() {
 
 /// 27 cubes, twisted and stretched.
 fn twisted(body: &Body) -> State {
-    let twisted = body.rest.iter().map(|&rest| {
+    let twisted = body.rest().iter().map(|&rest| {
         let (x, y, angle) = (rest.x - 0.15, rest.y - 0.15, 2.0 * rest.z);
         DVec3::new(x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos(), rest.z * 1.2)
     });
@@ -128,8 +127,8 @@ fn symmetric_methods_are_reversible() {
     let mut noise = Noise(21);
     let model = ShapeBased { rotation: RotationReading::Robust, ..shape_based(STIFFNESS, 0.0) };
     let start = State::new(
-        body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect(),
-        body.rest.iter().map(|_| noise.vector()).collect(),
+        body.rest().iter().map(|&rest| rest + noise.vector() * 0.01).collect(),
+        body.rest().iter().map(|_| noise.vector()).collect(),
     );
     for integrator in [Integrator::VelocityVerlet, Integrator::Pefrl] {
         let advanced = |state: State| {
@@ -151,8 +150,8 @@ fn symplectic_methods_keep_energy_and_angular_momentum_without_a_trend() {
     let body = lattice(2, 0.1);
     let mut noise = Noise(17);
     let start = State::new(
-        body.rest.iter().map(|&rest| rest + noise.vector() * 0.005).collect(),
-        body.rest.iter().map(|&rest| DVec3::new(3.0, 10.0, -5.0).cross(rest - 0.1)).collect(),
+        body.rest().iter().map(|&rest| rest + noise.vector() * 0.005).collect(),
+        body.rest().iter().map(|&rest| DVec3::new(3.0, 10.0, -5.0).cross(rest - 0.1)).collect(),
     );
     let model = ShapeBased { rotation: RotationReading::Robust, ..shape_based(STIFFNESS, 0.0) };
     let step = TAU / STIFFNESS.sqrt() / 50.0;
@@ -192,7 +191,7 @@ fn the_adaptive_method_keeps_its_tolerance() {
         let mut around = Surroundings::default();
         if let Some(height) = height {
             let turned = |at: &mut DVec3| *at = DVec3::new(at.x + 0.3 * at.y, at.y - 0.3 * at.x, at.z);
-            start = State::new(body.rest.clone(), vec![DVec3::Y * -1.0; body.len()]);
+            start = State::new(body.rest().to_vec(), vec![DVec3::Y * -1.0; body.len()]);
             start.position.iter_mut().for_each(turned);
             let lowest = start.position.iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
             start.position.iter_mut().for_each(|at| at.y += height - lowest);
@@ -220,7 +219,7 @@ fn the_adaptive_method_keeps_its_tolerance() {
 fn pair(rest: [DVec3; 2], heavy: bool, stiffness: f64, damping: f64) -> (Arc<Body>, MassSpring) {
     let elements = [&[0, 1][..]].into_iter().collect();
     let mass = vec![1.0, if heavy { 1e12 } else { 1.0 }];
-    let body = Arc::new(Body::new(Dimension::Space, rest.to_vec(), mass, elements, Solids::Ordered, None));
+    let body = Arc::new(Body::builder(rest.to_vec()).elements(elements).masses(mass).build().expect("a body"));
     (body, MassSpring { stiffness, damping, springs: [[0, 1]].into(), breaks_at: None })
 }
 
@@ -228,7 +227,7 @@ fn pair(rest: [DVec3; 2], heavy: bool, stiffness: f64, damping: f64) -> (Arc<Bod
 #[test]
 fn rebounds_of_the_adaptive_method_keep_the_energy() {
     let (body, model) = pair([DVec3::ZERO, DVec3::X], false, 1e-9, 0.0);
-    let start = State::at_rest(body.rest.iter().map(|&at| at + DVec3::Y * 0.01).collect());
+    let start = State::at_rest(body.rest().iter().map(|&at| at + DVec3::Y * 0.01).collect());
     let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(1.0, 0.0)], ..Surroundings::default() };
     let stepping = Stepping { tolerance: 1e-3, ..Stepping::new(Integrator::DormandPrince, 0.2) };
     let mut world = World::new(&body, start, &model, around, stepping);
@@ -245,7 +244,7 @@ fn rebounds_of_the_adaptive_method_keep_the_energy() {
 fn rebounds_of_the_adaptive_method_have_its_tolerance() {
     let (rate, decay, restitution, middle) = (20.0_f64, 3.0_f64, 0.8, 0.05);
     let (body, model) = pair([DVec3::Y * middle, DVec3::Y], true, rate * rate, 2.0 * decay);
-    let start = State::new(body.rest.clone(), vec![DVec3::Y * -4.0, DVec3::ZERO]);
+    let start = State::new(body.rest().to_vec(), vec![DVec3::Y * -4.0, DVec3::ZERO]);
     let around = Surroundings { obstacles: vec![floor(restitution, 0.0)], ..Surroundings::default() };
     let stepping = Stepping { tolerance: 1e-9, ..Stepping::new(Integrator::DormandPrince, 0.01) };
     let mut world = World::new(&body, start, &model, around, stepping);
@@ -302,8 +301,8 @@ fn the_implicit_method_is_stable_for_any_step() {
         for cycles in [0.5, 3.0, 30.0] {
             let mut noise = Noise(7);
             let start = State::new(
-                body.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect(),
-                body.rest.iter().map(|_| noise.vector()).collect(),
+                body.rest().iter().map(|&rest| rest + noise.vector() * 0.02).collect(),
+                body.rest().iter().map(|_| noise.vector()).collect(),
             );
             let mut world = stepped(&body, start, &model, Integrator::BackwardEuler, cycles * cycle);
             let energy = |world: &World| {
@@ -329,19 +328,19 @@ fn the_implicit_method_is_stable_for_any_step() {
 fn momentum_changes_by_gravity_alone() {
     let gravity = DVec3::new(1.0, -9.8, 0.5);
     for body in bodies() {
-        let in_plane = body.dimension == Dimension::Plane;
+        let in_plane = body.dimension() == Dimension::Plane;
         let flat = |v: DVec3| if in_plane { v.with_z(0.0) } else { v };
         let gravity = flat(gravity);
-        let mass: f64 = body.mass.iter().sum();
-        for (model, integrator) in cases(&body, 3.0).into_iter().flat_map(|case| {
-            let model: std::rc::Rc<dyn ElasticModel> = case.model.into();
-            ALL.into_iter().chain(HIGH).map(move |integrator| (model.clone(), integrator))
-        }) {
+        let mass: f64 = body.mass().iter().sum();
+        for (model, integrator) in cases(&body, 3.0)
+            .into_iter()
+            .flat_map(|case| ALL.into_iter().chain(HIGH).map(move |integrator| (case.model.clone(), integrator)))
+        {
             let mut noise = Noise(9);
             let scale = 0.02 * body.extent();
             let start = State::new(
-                body.rest.iter().map(|&rest| rest + flat(noise.vector()) * scale).collect(),
-                body.rest.iter().map(|_| flat(noise.vector())).collect(),
+                body.rest().iter().map(|&rest| rest + flat(noise.vector()) * scale).collect(),
+                body.rest().iter().map(|_| flat(noise.vector())).collect(),
             );
             let around = Surroundings { gravity, ..Surroundings::default() };
             let mut world = World::new(&body, start, model.as_ref(), around, Stepping::new(integrator, 1e-4));
@@ -364,8 +363,8 @@ fn contact_changes_momentum_along_its_normal_alone() {
         for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet] {
             let mut noise = Noise(6);
             let start = State::new(
-                body.rest.iter().map(|&rest| rest + noise.vector() * 0.004 + DVec3::Y * 0.01).collect(),
-                body.rest.iter().map(|_| noise.vector() * 0.1 + DVec3::new(0.5, -2.0, 0.2)).collect(),
+                body.rest().iter().map(|&rest| rest + noise.vector() * 0.004 + DVec3::Y * 0.01).collect(),
+                body.rest().iter().map(|_| noise.vector() * 0.1 + DVec3::new(0.5, -2.0, 0.2)).collect(),
             );
             let around = Surroundings {
                 gravity: DVec3::new(0.0, -9.8, 0.0),
@@ -395,7 +394,7 @@ fn velocity_verlet_goes_on_as_if_it_began() {
     };
     let mut noise = Noise(8);
     let start = State::new(
-        body.rest.iter().map(|&rest| rest + noise.vector() * 0.005 + DVec3::Y * 0.006).collect(),
+        body.rest().iter().map(|&rest| rest + noise.vector() * 0.005 + DVec3::Y * 0.006).collect(),
         vec![DVec3::new(0.2, -2.0, 0.1); body.len()],
     );
     let stepping = Stepping::new(Integrator::VelocityVerlet, 1e-3);
@@ -426,7 +425,7 @@ fn velocity_verlet_keeps_the_energy_of_a_bouncing_node() {
     let (height, g) = (0.05, 9.8);
     let around =
         Surroundings { gravity: DVec3::new(0.0, -g, 0.0), obstacles: vec![floor(1.0, 0.0)], ..Surroundings::default() };
-    let start = State::at_rest(nodes.rest.iter().map(|&rest| rest + DVec3::Y * height).collect());
+    let start = State::at_rest(nodes.rest().iter().map(|&rest| rest + DVec3::Y * height).collect());
     let stepping = Stepping::new(Integrator::VelocityVerlet, 0.01);
     let mut world = World::new(&nodes, start, &shape_based(1.0, 0.0), around, stepping);
     let (mut rebounds, mut last) = (0, 0.0);
@@ -451,7 +450,7 @@ fn a_damped_body_on_a_floor_comes_to_rest() {
             ..Surroundings::default()
         };
         let model = shape_based(STIFFNESS, 20.0);
-        let start = State::at_rest(body.rest.clone());
+        let start = State::at_rest(body.rest().to_vec());
         let stepping = Stepping::new(Integrator::VelocityVerlet, 1e-3);
         let mut world = World::new(&body, start, &model, around, stepping);
         let energy = |world: &World| {
@@ -474,7 +473,7 @@ fn a_damped_body_on_a_floor_comes_to_rest() {
 #[test]
 fn the_damping_limit_is_the_same_for_every_method() {
     let pair = body(Dimension::Space, &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[&[0, 1]]);
-    let start = State::new(pair.rest.clone(), vec![DVec3::Y * 1e-3, DVec3::Y * -1e-3]);
+    let start = State::new(pair.rest().to_vec(), vec![DVec3::Y * 1e-3, DVec3::Y * -1e-3]);
     let damping = 5.0;
     for integrator in ALL {
         let is_stable = |step: f64| {
@@ -504,7 +503,7 @@ fn the_residual_means_the_same_for_every_method() {
     let motion = Motion::Keys { keys, ease: Ease::Linear, repeat: false };
     let grip = Grip { nodes: (0..8).collect(), from: 0.0, until: 1.0, motion };
     let mut noise = Noise(11);
-    let start = State::at_rest(body.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect());
+    let start = State::at_rest(body.rest().iter().map(|&rest| rest + noise.vector() * 0.02).collect());
     for damping in [0.0, 20.0] {
         let model = ShapeBased { passes: 1, ..shape_based(STIFFNESS, damping) };
         let residuals = ALL.map(|integrator| {
@@ -537,7 +536,7 @@ fn held_nodes_have_the_velocity_of_the_hand() {
     for integrator in ALL.into_iter().chain(HIGH) {
         let around =
             Surroundings { gravity: DVec3::new(0.0, -9.8, 0.0), grips: vec![grip.clone()], ..Surroundings::default() };
-        let start = State::at_rest(body.rest.clone());
+        let start = State::at_rest(body.rest().to_vec());
         let mut world = World::new(&body, start, &shape_based(STIFFNESS, 5.0), around, Stepping::new(integrator, 1e-3));
         for _ in 0..100 {
             world.advance(1);
@@ -560,13 +559,14 @@ fn the_jitter_at_rest_has_the_bound_of_the_load() {
         let cells = lattice(2, 0.1);
         let mut noise = Noise(seed);
         let turn = noise.rotation();
-        let rest: Vec<_> = cells.rest.iter().map(|&rest| turn * (rest + noise.vector() * 0.02)).collect();
+        let rest: Vec<_> = cells.rest().iter().map(|&rest| turn * (rest + noise.vector() * 0.02)).collect();
         let lowest = rest.iter().map(|rest| rest.y).fold(f64::INFINITY, f64::min);
         let rest: Vec<_> = rest.into_iter().map(|rest| rest - DVec3::Y * lowest).collect();
         let mass: Vec<_> = rest.iter().map(|_| 1.0 + 0.5 * noise.next()).collect();
-        let irregular =
-            Arc::new(Body::new(Dimension::Space, rest.clone(), mass, cells.elements.clone(), Solids::Ordered, None));
-        let whole: f64 = irregular.mass.iter().sum();
+        let irregular = Arc::new(
+            Body::builder(rest.clone()).elements(cells.elements().clone()).masses(mass).build().expect("a body"),
+        );
+        let whole: f64 = irregular.mass().iter().sum();
         let around = Surroundings {
             gravity: DVec3::new(0.0, -g, 0.0),
             obstacles: vec![floor(restitution, 0.5)],
@@ -579,7 +579,7 @@ fn the_jitter_at_rest_has_the_bound_of_the_load() {
             world.advance(30_000);
             for _ in 0..100 {
                 world.advance(1);
-                for (velocity, mass) in world.state().velocity.iter().zip(&irregular.mass) {
+                for (velocity, mass) in world.state().velocity.iter().zip(irregular.mass()) {
                     let bound = match integrator {
                         Integrator::VelocityVerlet => 0.0,
                         _ => restitution / (1.0 - restitution) * g * whole / mass * step,
@@ -603,7 +603,7 @@ fn rebounds_are_alike_with_every_stable_method() {
             obstacles: vec![floor(0.5, 0.0)],
             ..Surroundings::default()
         };
-        let start = State::at_rest(body.rest.iter().map(|&rest| rest + DVec3::Y).collect());
+        let start = State::at_rest(body.rest().iter().map(|&rest| rest + DVec3::Y).collect());
         let stepping = Stepping::new(integrator, 2e-5);
         let mut world = World::new(&body, start, &shape_based(1e5, 0.0), around, stepping);
         world.advance(35_000);
@@ -621,7 +621,7 @@ fn rebounds_are_alike_with_every_stable_method() {
 fn energy_drifts_with_explicit_euler_alone() {
     let body = lattice(2, 0.1);
     let mut noise = Noise(3);
-    let start = State::at_rest(body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect());
+    let start = State::at_rest(body.rest().iter().map(|&rest| rest + noise.vector() * 0.01).collect());
     let model = ShapeBased { passes: 4, ..shape_based(STIFFNESS, 0.0) };
     let step = TAU / STIFFNESS.sqrt() / 100.0;
     let energy = |world: &World| {

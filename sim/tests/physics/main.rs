@@ -1,21 +1,29 @@
 //! The physics compared with the paper and with closed forms.
 
+mod body;
 mod breaking;
 mod carried;
+mod change;
 mod closed_forms;
 mod conformance;
 mod contact;
+#[cfg(feature = "scene")]
 mod continuum;
 mod degenerate_starts;
 #[allow(unreachable_pub, reason = "documentation shows it, too")]
 mod example_model;
 mod figures;
+#[cfg(feature = "scene")]
 mod fill;
 mod grips;
+#[cfg(feature = "scene")]
 mod implicit;
 mod integrators;
+#[cfg(feature = "scene")]
 mod masses;
+#[cfg(feature = "scene")]
 mod material;
+#[cfg(feature = "scene")]
 mod metric;
 mod own_method;
 mod parts;

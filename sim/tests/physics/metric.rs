@@ -4,7 +4,7 @@ use super::support::{Noise, Remembering, body, forces, lattice};
 use glam::{DMat3, DVec3};
 use localshape_sim::model::metric::{Metric, Parameters};
 use localshape_sim::model::{ModelParameters, continuum};
-use localshape_sim::{Body, Dimension, IndexLists, Material, Solids, State};
+use localshape_sim::{Body, Dimension, IndexLists, Material, State};
 use std::sync::Arc;
 
 const MATERIAL: Material = Material { young: 3e4, poisson: 0.3 };
@@ -24,7 +24,7 @@ fn sheet(cells: u32, side: f64, irregular: f64) -> Arc<Body> {
         elements.push(&[first, first + 1, first + n + 1, first + n]);
     }
     let mass = vec![1.0; rest.len()];
-    Arc::new(Body::new(Dimension::Plane, rest, mass, elements, Solids::Ordered, None))
+    Arc::new(Body::builder(rest).dimension(Dimension::Plane).elements(elements).masses(mass).build().expect("a body"))
 }
 
 /// The energy density of St. Venant and Kirchhoff (Pa).
@@ -46,9 +46,9 @@ fn energy(body: &Arc<Body>, position: Vec<DVec3>) -> f64 {
 fn uniform_strain_has_the_energy_of_the_material() {
     let skew = DMat3::from_cols(DVec3::new(0.2, 0.05, 0.0), DVec3::new(-0.03, 0.1, 0.04), DVec3::new(0.1, 0.0, 0.3));
     let cubes = lattice(3, 1.0);
-    let rest = cubes.rest.iter().map(|&rest| skew * rest).collect();
+    let rest = cubes.rest().iter().map(|&rest| skew * rest).collect();
     let mass = vec![1.0; cubes.len()];
-    let bricks = Body::new(Dimension::Space, rest, mass, cubes.elements.clone(), Solids::Ordered, None);
+    let bricks = Body::builder(rest).elements(cubes.elements().clone()).masses(mass).build().expect("a body");
     let in_space = DMat3::from_cols(DVec3::new(1.4, 0.2, -0.1), DVec3::new(0.3, 0.7, 0.0), DVec3::new(0.0, -0.6, 1.1));
     let in_plane = DMat3::from_cols(DVec3::new(1.4, 0.2, 0.0), DVec3::new(0.3, 0.7, 0.0), DVec3::Z);
     let skewed = 27.0 * skew.determinant();
@@ -57,8 +57,8 @@ fn uniform_strain_has_the_energy_of_the_material() {
         (sheet(5, 0.1, 0.0), in_plane, 0.25),
         (sheet(5, 0.1, 0.3), in_plane, 0.25),
     ] {
-        let found = energy(&body, body.rest.iter().map(|&rest| map * rest).collect());
-        let expected = volume * density(map, body.dimension);
+        let found = energy(&body, body.rest().iter().map(|&rest| map * rest).collect());
+        let expected = volume * density(map, body.dimension());
         assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
     }
 }
@@ -68,12 +68,13 @@ fn uniform_strain_has_the_energy_of_the_material() {
 fn the_energy_of_irregular_cells_in_space_is_almost_that_of_the_material() {
     let (cubes, mut noise) = (lattice(4, 1.0), Noise(9));
     let is_inner = |rest: DVec3| rest.to_array().iter().all(|&at| at > 0.0 && at < 4.0);
-    let rest = cubes.rest.iter().map(|&rest| if is_inner(rest) { rest + noise.vector() * 0.3 } else { rest }).collect();
+    let rest =
+        cubes.rest().iter().map(|&rest| if is_inner(rest) { rest + noise.vector() * 0.3 } else { rest }).collect();
     let mass = vec![1.0; cubes.len()];
-    let body = Arc::new(Body::new(Dimension::Space, rest, mass, cubes.elements.clone(), Solids::Ordered, None));
+    let body = Arc::new(Body::builder(rest).elements(cubes.elements().clone()).masses(mass).build().expect("a body"));
     let map = DMat3::from_cols(DVec3::new(1.2, 0.1, 0.0), DVec3::new(0.0, 0.9, 0.1), DVec3::new(0.2, 0.0, 1.1));
     let share =
-        energy(&body, body.rest.iter().map(|&rest| map * rest).collect()) / (64.0 * density(map, body.dimension));
+        energy(&body, body.rest().iter().map(|&rest| map * rest).collect()) / (64.0 * density(map, body.dimension()));
     assert!((0.9995..1.0).contains(&share), "{share}");
 }
 
@@ -82,10 +83,10 @@ fn the_energy_of_irregular_cells_in_space_is_almost_that_of_the_material() {
 fn constant_stress_exerts_no_force_inside_irregular_sheets() {
     let sheet = sheet(6, 0.1, 0.3);
     let map = DMat3::from_cols(DVec3::new(1.1, 0.2, 0.0), DVec3::new(-0.1, 0.8, 0.0), DVec3::Z);
-    let state = State::at_rest(sheet.rest.iter().map(|&rest| map * rest).collect());
+    let state = State::at_rest(sheet.rest().iter().map(|&rest| map * rest).collect());
     let forces = forces(&sheet, &Metric::new(&sheet, MATERIAL, 0.0).expect("cells"), &state);
     let largest = forces.iter().fold(0.0, |most: f64, force| most.max(force.length()));
-    for (force, rest) in forces.iter().zip(&sheet.rest) {
+    for (force, rest) in forces.iter().zip(sheet.rest()) {
         let is_inner = rest.x > 0.01 && rest.y > 0.01 && rest.x < 0.59 && rest.y < 0.59;
         assert!(!is_inner || force.length() < 1e-13 * largest, "{force}");
     }
@@ -117,7 +118,7 @@ fn the_limit_of_small_cells_is_the_material() {
     }
     let errors = [4, 8, 16].map(|cells| {
         let cubes = lattice(cells, 1.0 / f64::from(cells));
-        energy(&cubes, cubes.rest.iter().map(|&rest| bend(rest)).collect()) / exact - 1.0
+        energy(&cubes, cubes.rest().iter().map(|&rest| bend(rest)).collect()) / exact - 1.0
     });
     assert!(errors[0].abs() < 0.05, "{errors:?}");
     for pair in errors.windows(2) {
@@ -130,7 +131,7 @@ fn the_limit_of_small_cells_is_the_material() {
 #[test]
 fn a_mirrored_body_is_at_rest() {
     for body in [lattice(2, 0.1), sheet(3, 0.1, 0.2)] {
-        let mirrored = State::at_rest(body.rest.iter().map(|&rest| rest * DVec3::new(-1.0, 1.0, 1.0)).collect());
+        let mirrored = State::at_rest(body.rest().iter().map(|&rest| rest * DVec3::new(-1.0, 1.0, 1.0)).collect());
         let forces = forces(&body, &Metric::new(&body, MATERIAL, 0.0).expect("cells"), &mirrored);
         assert!(forces.iter().all(|force| force.length() < 1e-12 * MATERIAL.young), "{forces:?}");
     }

@@ -3,14 +3,14 @@
 use glam::DVec3;
 use localshape_sim::integrate::{ByComposition, Composition, Evaluation, Method, Runaway, Step};
 use localshape_sim::model::mass_spring::MassSpring;
-use localshape_sim::{Body, Dimension, Integrator, Kernel, Solids, State, Stepping, Surroundings, World};
+use localshape_sim::{Body, Integrator, Kernel, State, Stepping, Surroundings, World};
 use std::sync::Arc;
 
 /// Two nodes with a spring, which is stretched at first.
 fn world(integrator: Integrator) -> World {
     let rest = vec![DVec3::ZERO, DVec3::X];
     let elements = [&[0, 1][..]].into_iter().collect();
-    let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0, 2.0], elements, Solids::Ordered, None));
+    let body = Arc::new(Body::builder(rest).elements(elements).masses(vec![1.0, 2.0]).build().expect("a body"));
     let spring = MassSpring { stiffness: 10.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
     let start = State::at_rest(vec![DVec3::ZERO, DVec3::new(1.2, 0.1, 0.0)]);
     let around = Surroundings { gravity: DVec3::NEG_Y, ..Surroundings::default() };
@@ -24,7 +24,7 @@ struct Euler(Evaluation);
 impl Method for Euler {
     fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
         let time = step.interval().step;
-        step.evaluate(state.nodes(), &state.memory.model, &mut self.0);
+        step.evaluate(0.0, state.nodes(), &state.memory.model, &mut self.0);
         next.memory.model.copy_from_slice(&self.0.memory);
         next.memory.integrator.clear();
         for (node, &acceleration) in self.0.acceleration.iter().enumerate() {
@@ -34,6 +34,10 @@ impl Method for Euler {
         step.check(next)?;
         step.constrain(state, next, None);
         Ok(())
+    }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::<Self>::default()
     }
 }
 

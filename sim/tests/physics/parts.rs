@@ -6,8 +6,8 @@ use localshape_sim::model::ElasticModel;
 use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::{
-    Assembly, Body, Crew, Dimension, Divergence, Grip, Integrator, Kernel, Motion, Obstacle, Offset, Shape, Solids,
-    Springs, State, Status, Stepping, Surroundings, World,
+    Assembly, Body, Crew, Divergence, Grip, Integrator, Kernel, Motion, Obstacle, Offset, Shape, Solids, Springs,
+    State, Status, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -25,8 +25,8 @@ impl Thing {
     fn new(body: &Arc<Body>, model: impl ElasticModel + 'static, seed: u64) -> Self {
         let mut noise = Noise(seed);
         let shift = DVec3::new(0.3 * seed as f64, 0.02, 0.0);
-        let position = body.rest.iter().map(|&at| at + shift + noise.vector() * 0.003).collect();
-        let velocity = body.rest.iter().map(|_| DVec3::new(0.1, -2.0, 0.0) + noise.vector() * 0.1).collect();
+        let position = body.rest().iter().map(|&at| at + shift + noise.vector() * 0.003).collect();
+        let velocity = body.rest().iter().map(|_| DVec3::new(0.1, -2.0, 0.0) + noise.vector() * 0.1).collect();
         Self { body: Arc::clone(body), model: Box::new(model), start: State::new(position, velocity), grips: vec![] }
     }
 
@@ -48,7 +48,8 @@ fn world(things: &[&Thing], obstacles: &[Obstacle], stepping: Stepping) -> World
         start.position.extend(&thing.start.position);
         start.velocity.extend(&thing.start.velocity);
     }
-    let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: obstacles.to_vec(), grips };
+    let around =
+        Surroundings { gravity: DVec3::Y * -9.8, obstacles: obstacles.to_vec(), grips, ..Surroundings::default() };
     let bodies: Vec<_> = things.iter().map(|thing| (Arc::clone(&thing.body), &*thing.model)).collect();
     World::of_parts(&bodies, start, around, stepping)
 }
@@ -75,9 +76,16 @@ fn without_integrator(world: &World) -> State {
 /// Cubes of which the first lacks a corner, which are no lattice.
 fn notched(cells: u32) -> Arc<Body> {
     let whole = lattice(cells, 0.1);
-    let elements = whole.elements.iter().enumerate().map(|(at, nodes)| &nodes[usize::from(at == 0)..]).collect();
+    let elements = whole.elements().iter().enumerate().map(|(at, nodes)| &nodes[usize::from(at == 0)..]).collect();
     let mass = (0..whole.len()).map(|node| 0.7 + (node % 4) as f64 * 0.2).collect();
-    Arc::new(Body::new(Dimension::Space, whole.rest.clone(), mass, elements, Solids::Convex, None))
+    Arc::new(
+        Body::builder(whole.rest().to_vec())
+            .elements(elements)
+            .solids(Solids::Convex)
+            .masses(mass)
+            .build()
+            .expect("a body"),
+    )
 }
 
 /// Shape-based models on a lattice and on other elements, damped and not, and springs in families and others.

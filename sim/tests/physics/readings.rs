@@ -6,9 +6,9 @@ use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeB
 use localshape_sim::{Body, State};
 
 fn spinning(body: &Body, spin: DVec3) -> State {
-    let centre = body.rest.iter().sum::<DVec3>() / body.len() as f64;
-    let velocity = body.rest.iter().map(|&rest| spin.cross(rest - centre)).collect();
-    State::new(body.rest.clone(), velocity)
+    let centre = body.rest().iter().sum::<DVec3>() / body.len() as f64;
+    let velocity = body.rest().iter().map(|&rest| spin.cross(rest - centre)).collect();
+    State::new(body.rest().to_vec(), velocity)
 }
 
 /// One free element. As printed, its rotation decays as `exp(−D t/m)`; with damping of deformation it persists.

@@ -24,7 +24,7 @@ impl Recording for Played {
 #[test]
 fn a_recording_shows_the_states_of_its_run_and_all_diagnostics_that_need_no_model() {
     let (body, model) = (lattice(2, 0.1), shape_based(1e4, 0.0));
-    let start = State::new(body.rest.iter().map(|&at| at * 1.1).collect(), vec![DVec3::X; body.len()]);
+    let start = State::new(body.rest().iter().map(|&at| at * 1.1).collect(), vec![DVec3::X; body.len()]);
     let gravity = DVec3::Y * -9.8;
     let around = Surroundings { gravity, ..Surroundings::default() };
     let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-3);

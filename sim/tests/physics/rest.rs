@@ -26,7 +26,7 @@ fn a_damped_body_settles_to_the_static_equilibrium_within_the_bound_of_the_rebou
         heights.sort_by(f64::total_cmp);
         heights
     };
-    let start = State::at_rest(body.rest.clone());
+    let start = State::at_rest(body.rest().to_vec());
     let mut world = World::new(&body, start, &model, around(0.0), Stepping::new(Integrator::VelocityVerlet, STEP));
     world.advance(20_000);
     assert!(world.state().velocity.iter().all(|velocity| velocity.length() < 1e-12));
@@ -34,7 +34,7 @@ fn a_damped_body_settles_to_the_static_equilibrium_within_the_bound_of_the_rebou
     let load = GRAVITY * body.len() as f64;
     for restitution in [0.0, 1.0 / 3.0, 0.7] {
         let turned =
-            body.rest.iter().map(|&at| DVec3::new(at.x + 0.6 * at.y, at.y - 0.6 * at.x + 0.3, at.z + 0.1 * at.y));
+            body.rest().iter().map(|&at| DVec3::new(at.x + 0.6 * at.y, at.y - 0.6 * at.x + 0.3, at.z + 0.1 * at.y));
         let start = State::at_rest(turned.collect());
         let stepping = Stepping::new(Integrator::default(), STEP);
         let mut world = World::new(&body, start, &model, around(restitution), stepping);

@@ -12,7 +12,7 @@ fn fastest(around: Surroundings, seconds: f64) -> f64 {
     let body = lattice(1, 0.01);
     let step = 0.001;
     let stepping = Stepping::new(Integrator::default(), step);
-    let start = State::at_rest(body.rest.clone());
+    let start = State::at_rest(body.rest().to_vec());
     let mut world = World::new(&body, start, &shape_based(10.0, 0.0), around, stepping);
     world.advance((seconds / step).round() as u64);
     assert_eq!(world.status(), Status::Ok);

@@ -21,7 +21,7 @@ pub(crate) fn goals(rest: &[DVec3], now: &[DVec3]) -> Vec<DVec3> {
 #[test]
 fn shape_matching_of_one_element_of_equal_masses_is_the_shape_model() {
     let (body, mut noise) = (lattice(1, 0.1), Noise(7));
-    let start = State::at_rest(body.rest.iter().map(|&rest| rest + noise.vector() * 0.02).collect());
+    let start = State::at_rest(body.rest().iter().map(|&rest| rest + noise.vector() * 0.02).collect());
     let gravity = DVec3::new(0.0, -9.8, 0.0);
     let (alpha, mass, step) = (0.4, 1.0, 1e-2);
     let model = ShapeBased::new(alpha * mass / (step * step));
@@ -29,7 +29,7 @@ fn shape_matching_of_one_element_of_equal_masses_is_the_shape_model() {
     let mut world = world(&body, start.clone(), &model, step, around);
     let (mut position, mut velocity) = (start.position, start.velocity);
     for _ in 0..100 {
-        let goals = goals(&body.rest, &position);
+        let goals = goals(body.rest(), &position);
         for (node, goal) in goals.iter().enumerate() {
             velocity[node] += (*goal - position[node]) * (alpha / step) + gravity * step;
             position[node] += velocity[node] * step;

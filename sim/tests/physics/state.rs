@@ -37,9 +37,14 @@ fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
         let ways = ways.filter(|(way, kernel)| *kernel == Kernel::Reference || ALL[..4].contains(way));
         for (integrator, kernel) in ways {
             for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 0.0)] {
-                let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips };
+                let around = Surroundings {
+                    gravity: DVec3::Y * -9.8,
+                    obstacles: vec![floor(0.5, 0.3)],
+                    grips,
+                    ..Surroundings::default()
+                };
                 for case in cases(body, damping) {
-                    let start = State::new(body.rest.clone(), vec![DVec3::Y * -3.0; body.len()]);
+                    let start = State::new(body.rest().to_vec(), vec![DVec3::Y * -3.0; body.len()]);
                     let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
                     let begin = || World::new(body, start.clone(), case.model.as_ref(), around.clone(), stepping);
                     let mut whole = begin();
@@ -63,7 +68,7 @@ fn a_state_is_whole_also_on_the_way() {
     let body = lattice(2, 0.1);
     for kernel in [Kernel::Fast, Kernel::Reference] {
         let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 1e-3) };
-        let start = State::new(body.rest.clone(), vec![DVec3::Y; body.len()]);
+        let start = State::new(body.rest().to_vec(), vec![DVec3::Y; body.len()]);
         let begin = || World::new(&body, start.clone(), &shape_based(1e4, 0.0), Surroundings::default(), stepping);
         let mut world = begin();
         assert!(!world.advance_towards(Moment::at(0.1), 40) && world.steps() == 40);
@@ -89,7 +94,7 @@ fn a_rejected_step_leaves_nothing_behind() {
         // Far beyond the limit of stability.
         let stepping = Stepping { kernel, ..Stepping::new(integrator, 0.5) };
         let mut noise = Noise(4);
-        let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector() * 0.02).collect());
+        let start = State::at_rest(body.rest().iter().map(|&at| at + noise.vector() * 0.02).collect());
         let around = Surroundings { grips, ..Surroundings::default() };
         let begin = || World::new(&body, start.clone(), &shape, around.clone(), stepping);
         let mut world = begin();
@@ -112,7 +117,7 @@ fn kernels_tell_the_same_runaway() {
             let around =
                 Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.0, 1.0)], ..Surroundings::default() };
             let mut noise = Noise(4);
-            let start = State::at_rest(body.rest.iter().map(|&at| at + noise.vector().with_z(0.0) * 0.1).collect());
+            let start = State::at_rest(body.rest().iter().map(|&at| at + noise.vector().with_z(0.0) * 0.1).collect());
             let [fast, plain] = [Kernel::Fast, Kernel::Reference].map(|kernel| {
                 let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 5.0) };
                 let mut world = World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);

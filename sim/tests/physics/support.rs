@@ -5,8 +5,7 @@ use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ForceModel, Report, Scratch};
 use localshape_sim::{
-    Body, Dimension, IndexLists, Integrator, Motion, Obstacle, Shape, Solids, Springs, State, Stepping, Surroundings,
-    World,
+    Body, Dimension, IndexLists, Integrator, Motion, Obstacle, Shape, Springs, State, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -28,14 +27,21 @@ pub(crate) fn bricks(cells: [u32; 3], sides: DVec3) -> Arc<Body> {
         elements.push(&[0u32, 1, 2, 3, 4, 5, 6, 7].map(|bit| at(x + (bit & 1), y + (bit >> 1 & 1), z + (bit >> 2))));
     }
     let mass = vec![1.0; rest.len()];
-    Arc::new(Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None))
+    Arc::new(Body::builder(rest).elements(elements).masses(mass).build().expect("a body"))
 }
 
 /// A body in the plane or in space from lists.
 pub(crate) fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Arc<Body> {
     let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
     let mass = vec![1.0; rest.len()];
-    Arc::new(Body::new(dimension, rest, mass, elements.iter().copied().collect(), Solids::Ordered, None))
+    Arc::new(
+        Body::builder(rest)
+            .dimension(dimension)
+            .elements(elements.iter().copied().collect())
+            .masses(mass)
+            .build()
+            .expect("a body"),
+    )
 }
 
 pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
@@ -139,7 +145,7 @@ pub(crate) fn settled(
     let mut worker = Remembering::new(body, model, &State::at_rest(start.to_vec()));
     let (count, extent) = (3 * body.len(), body.extent());
     let reach = |nodes: &[u32]| nodes.iter().max().expect("nodes") - nodes.iter().min().expect("nodes");
-    let reach = body.elements.iter().map(reach).max().expect("elements") as usize;
+    let reach = body.elements().iter().map(reach).max().expect("elements") as usize;
     let is_held = |at: usize| held[at / 3][at % 3];
     let mut position = start.to_vec();
     for _ in 0..60 {

@@ -5,8 +5,8 @@ use glam::DVec3;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::{
-    Body, Crew, Dimension, Grip, Integrator, Kernel, Motion, Obstacle, Offset, Shape, Solids, Springs, State, Stepping,
-    Surroundings, World,
+    Body, Crew, Grip, Integrator, Kernel, Motion, Obstacle, Offset, Shape, Springs, State, Stepping, Surroundings,
+    World,
 };
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     // Large enough that forces, springs and nodes are all divided into several blocks.
     let body = lattice(12, 0.1);
     let mut noise = Noise(2);
-    let position: Vec<_> = body.rest.iter().map(|&rest| rest + noise.vector() * 0.01).collect();
+    let position: Vec<_> = body.rest().iter().map(|&rest| rest + noise.vector() * 0.01).collect();
     let velocity = vec![DVec3::new(0.3, -5.0, 0.1); body.len()];
     let start = State::new(position, velocity);
     let amplitude = Offset { shift: DVec3::new(0.1, 0.2, 0.0), rotation: DVec3::Z * 0.3 };
@@ -31,6 +31,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         gravity: DVec3::new(0.0, -9.8, 0.0),
         obstacles: vec![floor(0.5, 0.3), swinging],
         grips: vec![Grip { nodes: vec![2000, 2100], from: 0.005, until: 0.01, motion: Motion::Still }],
+        ..Surroundings::default()
     };
     let shape = shape_based(1e4, 20.0);
     let length = ShapeBased { rotation: RotationReading::VectorLength, ..shape.clone() };
@@ -60,16 +61,13 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         (&exact, Integrator::BackwardEuler, Kernel::Reference),
     ] {
         let ends = [1, 2, 8].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
-            pool.install(|| {
-                let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
-                let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
-                world.set_crew(Crew::new(threads));
-                // These evaluate forces many times a step.
-                let is_slow = matches!(integrator, Integrator::DormandPrince | Integrator::BackwardEuler);
-                world.advance(if is_slow { 6 } else { 15 });
-                world.state().clone()
-            })
+            let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
+            let mut world = World::new(&body, start.clone(), model, around.clone(), stepping);
+            world.set_crew(Crew::new(threads));
+            // These evaluate forces many times a step.
+            let is_slow = matches!(integrator, Integrator::DormandPrince | Integrator::BackwardEuler);
+            world.advance(if is_slow { 6 } else { 15 });
+            world.state().clone()
         });
         assert!(ends[0] == ends[1] && ends[0] == ends[2], "{model:?} {kernel:?}");
         assert!(ends[0] != start);
@@ -83,9 +81,9 @@ fn rotations_that_need_the_global_solver_are_counted_by_every_code_alike() {
     const MIRRORED: f64 = -0.999_999;
     let whole = lattice(6, 0.1);
     // The general code for the second body, which lacks one corner of a cube.
-    let short = whole.elements.iter().enumerate().map(|(at, nodes)| &nodes[usize::from(at == 7)..]).collect();
-    let (rest, mass) = (whole.rest.clone(), whole.mass.clone());
-    let short = Arc::new(Body::new(Dimension::Space, rest, mass, short, Solids::Ordered, None));
+    let short = whole.elements().iter().enumerate().map(|(at, nodes)| &nodes[usize::from(at == 7)..]).collect();
+    let (rest, mass) = (whole.rest().to_vec(), whole.mass().to_vec());
+    let short = Arc::new(Body::builder(rest).elements(short).masses(mass).build().expect("a body"));
     for (body, crush, rotation) in [
         (&whole, 0.9, RotationReading::Robust),
         (&whole, 0.9, RotationReading::Arctangent),
@@ -95,7 +93,7 @@ fn rotations_that_need_the_global_solver_are_counted_by_every_code_alike() {
         (&short, MIRRORED, RotationReading::Robust),
         (&short, MIRRORED, RotationReading::Arctangent),
     ] {
-        let position = body.rest.iter().map(|rest| *rest * DVec3::new(1.0, 1.0, crush));
+        let position = body.rest().iter().map(|rest| *rest * DVec3::new(1.0, 1.0, crush));
         let start = State::at_rest(position.collect());
         let model = ShapeBased { rotation, ..shape_based(1e4, 20.0) };
         let count = |kernel: Kernel, threads: usize, calls: u64| {

@@ -79,7 +79,7 @@ impl Document {
     /// Appends a body: a mesh, its skin, and the motions of its joints at the times in the array `times`.
     fn body(&mut self, place: usize, body: &OfBody, times: usize, frames: usize) {
         let OfBody { name, surface, .. } = body;
-        let (rest, joints) = (&surface.body.rest, surface.body.len());
+        let (rest, joints) = (surface.body.rest(), surface.body.len());
         let name = serde_json::to_string(name).expect("a text");
         let points = surface.carried.as_ref().map_or(rest, |carried| &carried.rest);
         let (low, high) = bounds(points);

@@ -15,10 +15,12 @@ mod usda;
 mod vtu;
 
 use super::{AtomicFile, OutputError, StatesWriter, write_whole};
+use crate::carried::positions;
 use crate::reading::captions::typed;
 use crate::reading::words::{count, quoted};
+use crate::runner::{Frame, RunFrame};
 use crate::scene::{Run, Scene};
-use crate::sim::{Body, Carried, Frame, RunFrame, Snapshot, Support};
+use crate::sim::{Body, Carried, Snapshot, Support};
 use course::Course;
 pub(super) use mark::scene_of;
 use mark::{mark, starts_with};
@@ -180,16 +182,16 @@ impl<'a> Export<'a> {
         let [position, velocity] = [position, velocity].map(|all| &all[part.nodes.clone()]);
         let body = match &part.shape {
             Shape::Surface(carried) => {
-                let velocity = carried.positions(velocity);
+                let velocity = positions(carried, velocity);
                 let of_points = [Column::Vectors("velocity", &velocity)];
-                return vtu::document(&mark, *time, &part.cells, &carried.positions(position), &of_points, &[]);
+                return vtu::document(&mark, *time, &part.cells, &positions(carried, position), &of_points, &[]);
             }
             Shape::Elements(body) => body,
         };
         let mut of_points = vec![Column::Vectors("velocity", velocity)];
         let mut of_cells = vec![Column::Flags("turned_over", &turned_over[part.elements.clone()])];
         of_cells.extend(broken.get(part.elements.clone()).map(|broken| Column::Flags("broken", broken)));
-        of_cells.extend(body.fill.as_ref().map(|fill| Column::Numbers("fill", fill)));
+        of_cells.extend(body.fill().map(|fill| Column::Numbers("fill", fill)));
         let name = self.scene.view.colour.map(|scale| (scale.field.support(), typed(&scale.field)));
         // A run from which distances are measured has no values.
         match &name {
@@ -343,7 +345,7 @@ fn all_series<'a>(scene: &'a Scene, runs: &'a [usize]) -> impl Iterator<Item = S
             let stem = file_name(&scene.runs[run].name) + ending;
             (!parts.is_empty()).then_some(Series { place, run, stem, parts })
         };
-        let surface = |body: &Arc<Body>| body.carried.as_ref().map(|carried| Shape::Surface(Arc::clone(carried)));
+        let surface = |body: &Arc<Body>| body.carried().map(|carried| Shape::Surface(Arc::clone(carried)));
         [series("", |body| Some(Shape::Elements(Arc::clone(body)))), series(SURFACE, surface)].into_iter().flatten()
     })
 }
@@ -364,7 +366,7 @@ pub(crate) fn files(scene: &Scene, runs: &[usize], formats: &[Format], frames: u
     for &run in runs {
         let run = &scene.runs[run];
         let stem = file_name(&run.name);
-        let carries = run.bodies.bodies().iter().any(|body| body.carried.is_some());
+        let carries = run.bodies.bodies().iter().any(|body| body.carried().is_some());
         for format in formats {
             match format {
                 Format::Vtu => {

@@ -24,7 +24,7 @@ impl Cells {
     pub(super) fn of_body(body: &Body) -> Self {
         let mut lists = Lists::default();
         let topology = body.topology();
-        for (element, (nodes, &kind)) in body.elements.iter().zip(&body.kinds).enumerate() {
+        for (element, (nodes, &kind)) in body.elements().iter().zip(body.kinds()).enumerate() {
             let mut faces: Vec<Vec<u32>> = Vec::new();
             if kind == ElementKind::Other {
                 topology.for_each_face(element, |face| faces.push(face.to_vec()));

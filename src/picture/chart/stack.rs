@@ -152,7 +152,7 @@ fn of_parts(diagnostic: Diagnostic, of_scenes: &[(&Scene, &History)]) -> String 
         if diagnostic != Diagnostic::Broken {
             return elements(run.body());
         }
-        let breaking = run.models_and_bodies().filter(|(model, body)| model.breaks(body).is_some());
+        let breaking = run.models_and_bodies().filter(|(model, body)| model.properties(body).breakable.is_some());
         let of_body = |(model, body): (&dyn ElasticModel, &Body)| match model.springs().len() {
             0 => elements(body),
             springs => vec![(springs, "springs")],

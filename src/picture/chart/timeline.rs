@@ -10,9 +10,10 @@ use crate::picture::caption::Writer;
 use crate::picture::layout::steps::MARGIN;
 use crate::picture::layout::{Layout, Room};
 use crate::picture::page::Item;
+use crate::runner::Frame;
 use crate::runner::history::History;
 use crate::scene::Scene;
-use crate::sim::{Diagnostic, Frame, Status};
+use crate::sim::{Diagnostic, Status};
 
 /// The largest shares of the room for names of charts and for the names at the ends of curves.
 const NAME: f64 = 0.3;

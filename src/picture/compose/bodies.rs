@@ -59,15 +59,15 @@ impl<'a> Bodies<'a> {
             share.max(scene.bodies[at].side / view.side)
         };
         let soft_of: Vec<_> = run.of.iter().zip(assembly.bodies()).map(soft).collect();
-        let rest_areas = match body.dimension {
-            Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
+        let rest_areas = match body.dimension() {
+            Dimension::Plane => body.elements().iter().map(|nodes| area(nodes, body.rest())).collect(),
             Dimension::Space => Vec::new(),
         };
         let ears = Ears::new(body);
         let (skin, bare) = (Skin::new(assembly, &ears, view.visible.surfaces), bare_elements(body));
         let cage = (!skin.fine.is_empty()).then(|| Skin::new(assembly, &ears, false));
         let of_elements = cage.as_ref().unwrap_or(&skin);
-        let throws_shadow = view.shadow && body.dimension == Dimension::Space;
+        let throws_shadow = view.shadow && body.dimension() == Dimension::Space;
         Self {
             assembly,
             side,
@@ -118,14 +118,14 @@ impl<'a> Bodies<'a> {
             return None;
         }
         let whole = (0..).zip(&self.rest_areas).filter(|&(at, rest)| *rest != 0.0 && !is_broken(&snapshot.broken, at));
-        let areas = whole.map(|(at, rest)| (&body.elements[at as usize], rest));
+        let areas = whole.map(|(at, rest)| (&body.elements()[at as usize], rest));
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
 }
 
 /// The nodes with arrows: those on the surface, and those of elements without faces.
 fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
-    let of_bare = bare.iter().flat_map(|&element| &body.elements[element]);
+    let of_bare = bare.iter().flat_map(|&element| &body.elements()[element]);
     let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
     nodes.sort_unstable();
     nodes.dedup();

@@ -100,7 +100,7 @@ impl Draft<'_> {
 
     /// Whether a carried surface is seen in place of a face. Faces that a broken element uncovers are seen themselves.
     pub(super) fn is_covered(&self, side: &Side) -> bool {
-        let (face, faces, broken) = (side.face as usize, &self.body.faces, &self.run.snapshot.broken);
+        let (face, faces, broken) = (side.face as usize, self.body.faces(), &self.run.snapshot.broken);
         let mut beside = [faces.inner[face], faces.outer[face]].into_iter().flatten();
         !beside.any(|element| is_broken(broken, element))
             && self.bodies.skin.fine.iter().any(|fine| fine.faces.contains(&face))
@@ -112,7 +112,7 @@ impl Draft<'_> {
         let mut lines = Vec::new();
         let broken = &self.run.snapshot.broken;
         for &element in self.bodies.bare.iter().filter(|&&element| !is_broken(broken, element as u32)) {
-            let nodes = &self.body.elements[element];
+            let nodes = &self.body.elements()[element];
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let at = |node: u32| self.position[node as usize];
             let edges = self.body.topology().edges_of(element);

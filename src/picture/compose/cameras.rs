@@ -6,9 +6,9 @@ use crate::picture::Framing;
 use crate::picture::framing::{self, Moment, Seen, Shot};
 use crate::picture::layout::steps::{CLOSE, RING};
 use crate::picture::layout::{Rectangle, Scale, clear_of_words};
+use crate::runner::RunFrame;
 use crate::runner::history::History;
 use crate::scene::{Run, Scene};
-use crate::sim::RunFrame;
 use std::borrow::Cow;
 
 /// The most columns of panels that a scene does not arrange itself, and how many times larger bodies must become for

@@ -12,8 +12,9 @@ use crate::picture::narrow::{narrow_count, narrow_point};
 use crate::picture::plane::sides;
 use crate::picture::shadow::key_light;
 use crate::picture::{Colour, Framing};
+use crate::runner::RunFrame;
 use crate::scene::Scene;
-use crate::sim::{Assembly, Body, Dimension, RunFrame, Snapshot, Status};
+use crate::sim::{Assembly, Body, Dimension, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -87,7 +88,7 @@ impl<'a> Draft<'a> {
         let greyed = run.shown().status != Status::Ok;
         let diverged = greyed && run.last_fit.is_none();
         let run = Shown { run: run.run, snapshot: run.shown() };
-        let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
+        let lens = Lens::new(view, framing, body.dimension(), viewport.map(f64::from), scale.unit);
         // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
         let position = finite(position, FARTHEST * view.side);
@@ -101,7 +102,7 @@ impl<'a> Draft<'a> {
             Some(shades) => shades.of_nodes(body),
             None => places_of_bodies(bodies.assembly()),
         };
-        let flat = body.dimension == Dimension::Plane;
+        let flat = body.dimension() == Dimension::Plane;
         let palette = if greyed { composer.palette.greyed() } else { composer.palette };
         Self {
             composer,
@@ -172,7 +173,7 @@ impl<'a> Draft<'a> {
             return Cow::Borrowed(&self.position[..]);
         }
         let mut whole = vec![false; self.body.len()];
-        let elements = self.body.elements.iter().zip(broken).filter(|(_, broken)| !*broken);
+        let elements = self.body.elements().iter().zip(broken).filter(|(_, broken)| !*broken);
         elements.flat_map(|(nodes, _)| nodes).for_each(|&node| whole[node as usize] = true);
         self.position.iter().zip(whole).filter(|(_, whole)| *whole).map(|(&at, _)| at).collect()
     }

@@ -10,7 +10,8 @@ use crate::picture::layout::Rectangle;
 use crate::picture::layout::steps::{STRONG, TICK};
 use crate::picture::narrow::narrow;
 use crate::picture::page::Pen;
-use crate::sim::{RunFrame, Status};
+use crate::runner::RunFrame;
+use crate::sim::Status;
 use glam::DVec3;
 
 /// The opacity of the casing of outlines.

@@ -6,7 +6,7 @@ use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
 use crate::picture::wire::spring_strain;
 use crate::picture::{Framing, arrows, number};
-use crate::sim::{Frame, RunFrame};
+use crate::runner::{Frame, RunFrame};
 use std::borrow::Cow;
 
 impl Composer<'_> {

@@ -7,7 +7,8 @@ use crate::picture::layout::steps::{CHART, SHORT};
 use crate::picture::layout::tree::{self, Node, Solved};
 use crate::picture::layout::{Layout, Rectangle, Scale};
 use crate::picture::{Framing, number};
-use crate::sim::{RunFrame, Snapshot};
+use crate::runner::RunFrame;
+use crate::sim::Snapshot;
 
 /// The largest and the least part of a panel's width for tallies.
 const TALLY: [f64; 2] = [0.36, 0.12];
@@ -42,7 +43,7 @@ impl Composer<'_> {
         let writer = self.writer(scale);
         let width = (f64::from(panel[2]) - 2.0 * scale.margin()).max(0.0);
         let node = |numeral, [wanted, least]: [f64; 2]| Node::new(numeral, wanted).least(least).after(scale.gap());
-        let elements = runs.iter().map(|&run| self.bodies(run).body().elements.len()).max().unwrap_or(0);
+        let elements = runs.iter().map(|&run| self.bodies(run).body().elements().len()).max().unwrap_or(0);
         let count = (labels.count && elements > 0).then(|| {
             let tallies = runs.iter().map(|&run| self.bodies(run).tally.width(scale, TALLY[0] * width));
             let tally = Node::new(NumberPart::Tally, tallies.fold(0.0, f64::max)).least(TALLY[1] * width);

@@ -155,7 +155,7 @@ impl Draft<'_> {
         let shortest = (RING * size).max(FREE).max(2.0 * node);
         let arrows = self.facing_bearers().into_iter().filter_map(|(node, opacity)| {
             let placement = self.run.snapshot.placements[self.bodies.assembly().body_of_node(node as usize)];
-            let start = placement.place(self.body.rest[node as usize]);
+            let start = placement.place(self.body.rest()[node as usize]);
             let end = start + view.arrow_scale * (self.position[node as usize] - start);
             let (to, depth) = self.lens.project(end)?;
             let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;

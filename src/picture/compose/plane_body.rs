@@ -76,7 +76,7 @@ impl<'a> PlaneBody<'a> {
             return sets;
         }
         let pixel = |node: u32| self.pixels[node as usize];
-        let faces = &body.faces;
+        let faces = body.faces();
         for of_body in bodies.faces() {
             for face in of_body {
                 let (nodes, element) = (&faces.nodes[face], faces.inner[face].or(faces.outer[face]));

@@ -108,7 +108,7 @@ impl Draft<'_> {
     pub(super) fn signs(&self, marks: &mut Vec<Item>) {
         if self.diverged
             || !self.scene.view.visible.surfaces
-            || self.body.elements.len() > MOST_SIGNS
+            || self.body.elements().len() > MOST_SIGNS
             || self.position.is_empty()
         {
             return;
@@ -117,7 +117,7 @@ impl Draft<'_> {
         let has_sign = |&(element, nodes): &(usize, &[u32])| {
             nodes.len() > 2 && !is_broken(&self.run.snapshot.broken, element as u32)
         };
-        for (element, nodes) in self.body.elements.iter().enumerate().filter(has_sign) {
+        for (element, nodes) in self.body.elements().iter().enumerate().filter(has_sign) {
             let corners: Vec<_> = nodes.iter().filter_map(|&node| self.pixel(self.position[node as usize])).collect();
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let set = if over { &mut turned_over } else { &mut sound };

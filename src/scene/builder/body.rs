@@ -65,7 +65,7 @@ impl BodyBuilder {
     /// let hare = BodyBuilder::mesh("scenes/hare.ply").fill(Fill::Cubes { side: 0.1 }).density(300.0).lowest(0.5);
     /// let scene = Scene::builder("hare", hare).run("Local shape", shape_based::Parameters::new(800.0));
     /// let body = &scene.build(&Limits::default())?.bodies[0].body;
-    /// assert!(body.elements.len() < 200 && body.carried.is_some());
+    /// assert!(body.elements().len() < 200 && body.carried().is_some());
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     pub fn mesh(file: impl Into<String>) -> Self {

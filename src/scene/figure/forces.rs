@@ -5,7 +5,7 @@ use super::file::{ForcesFile, NumbersFile};
 use super::resolve::{Scenes, share_lines};
 use crate::reading::collector::{PathPart, key_path};
 use crate::reading::words::{list, quoted};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Run, Scene, SceneError};
 
 /// The most nodes of a body whose forces are drawn.
 const MOST_NODES: usize = 80;
@@ -81,9 +81,13 @@ impl Scenes<'_, '_, '_> {
 
     /// Reports scenes whose forces have another unit than those of the first, or are too many. With `numbers` their unit has a length.
     fn check_units(&mut self, numbers: bool) {
-        let stiffness = self.scenes[0].runs[0].models[0].stiffness();
+        let of_runs = |scene: &Scene| {
+            let each = scene.runs.iter().flat_map(Run::models_and_bodies);
+            each.map(|(model, body)| model.properties(body).stiffness).collect::<Vec<_>>()
+        };
+        let stiffness = of_runs(&self.scenes[0])[0];
         for (index, scene) in self.scenes.iter().enumerate() {
-            if scene.runs.iter().flat_map(|run| &run.models).any(|model| model.stiffness() != stiffness) {
+            if of_runs(scene).iter().any(|&other| other != stiffness) {
                 let message =
                     format!("a run has another stiffness than the first, {stiffness} N/m: forces would have two units");
                 self.report.at(&of_forces(index), message, "give all runs the same stiffness");

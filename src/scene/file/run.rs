@@ -168,12 +168,20 @@ impl ModelFile {
             Self::Own(model) => check_own(&**model, body).map(|()| Arc::clone(model)),
         }
     }
+
+    /// A parameter that has no effect on a body.
+    pub(in crate::scene) fn without_effect(&self, body: &Body) -> Option<Misfit> {
+        match self {
+            Self::Typed(parameters) => parameters.without_effect(body),
+            Self::Own(_) => None,
+        }
+    }
 }
 
 /// Checks the properties of a model of the caller's own.
 fn check_own(model: &dyn ElasticModel, body: &Body) -> Result<(), Misfit> {
     let misfit = |key, message: String| Err(Misfit { key, message });
-    let (stiffness, nodes) = (model.stiffness(), body.len());
+    let (stiffness, nodes) = (model.properties(body).stiffness, body.len());
     if !(stiffness > 0.0 && stiffness <= LARGEST) {
         let message =
             format!("the stiffness of the model is {stiffness}; expected a number greater than 0, up to {LARGEST:e}");

@@ -159,7 +159,6 @@ mod tests {
             let (low, high) = bounds(&plain(&typed.cells).nodes);
             let scale = Block::new(&typed).sides / 0.5;
             let (low, high) = (low * scale, high * scale);
-            let count = nodes.len();
             if typed.cells.len() == 2 {
                 // Every side of a single element lies on the outline.
                 let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::geometry::around).collect();
@@ -172,9 +171,9 @@ mod tests {
                     );
                 }
             } else {
-                let body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, Solids::Ordered, None);
-                for (face, outer) in body.faces.nodes.iter().zip(&body.faces.outer) {
-                    let corners: Vec<_> = face.iter().map(|&node| body.rest[node as usize]).collect();
+                let body = Body::builder(nodes).elements(elements).build().expect("a body");
+                for (face, outer) in body.faces().nodes.iter().zip(&body.faces().outer) {
+                    let corners: Vec<_> = face.iter().map(|&node| body.rest()[node as usize]).collect();
                     assert_eq!(on_the_outside(&corners, low, high, 3), outer.is_none(), "{typed:?}: {corners:?}");
                 }
             }

@@ -127,33 +127,34 @@ impl MeshSummary {
         let mesh = MeshFile::read(path, None, limits)?.mesh;
         let notes = mesh.notes().to_vec();
         let summary = match mesh {
-            Mesh::Volume(volume) => Self::of_cells(volume),
+            Mesh::Volume(volume) => Self::of_cells(volume)?,
             Mesh::Surface(surface) => Self::of_surface(&surface, limits),
         };
         Ok(Self { notes, ..summary })
     }
 
-    fn of_cells(volume: Volume) -> Self {
+    fn of_cells(volume: Volume) -> Result<Self, Wrong> {
         let parts = parts(volume.points.len(), &volume.cells);
         let weld = if parts > 1 { volume.joining_weld() } else { None };
         let Volume { dimension, points, solids, cells, groups, turned, .. } = volume;
         let (low, high) = bounds(&points);
         let number = points.len();
-        let body = Body::new(dimension, points, vec![1.0; number], cells, solids, None);
+        let body = Body::builder(points).dimension(dimension).elements(cells).solids(solids).build();
+        let body = body.map_err(|error| (format!("has a mistake: {error}"), None))?;
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         let content = Content::Cells(CellsSummary {
-            count: body.elements.len(),
+            count: body.elements().len(),
             kinds: captions::elements(&body).into_iter().map(of_kind).collect(),
             volume: volumes_at_rest(&body).iter().sum(),
             outer_faces: (dimension == Dimension::Space)
-                .then(|| body.faces.outer.iter().filter(|outer| outer.is_none()).count()),
+                .then(|| body.faces().outer.iter().filter(|outer| outer.is_none()).count()),
             turned,
             parts,
             weld,
             groups: groups.iter().map(GroupSummary::new).collect(),
             error: crossed(&body),
         });
-        Self { points: number, extent: (high - low).to_array(), notes: Vec::new(), content }
+        Ok(Self { points: number, extent: (high - low).to_array(), notes: Vec::new(), content })
     }
 
     fn of_surface(surface: &Surface, limits: &Limits) -> Self {
@@ -204,8 +205,8 @@ impl MeshSummary {
 
 /// What is wrong with the first polygon whose sides cross.
 fn crossed(body: &Body) -> Option<String> {
-    body.elements.iter().zip(&body.kinds).enumerate().find_map(|(at, (nodes, &kind))| {
-        let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
+    body.elements().iter().zip(body.kinds()).enumerate().find_map(|(at, (nodes, &kind))| {
+        let corners: Vec<_> = nodes.iter().map(|&node| body.rest()[node as usize]).collect();
         let [one, other] =
             crossing(kind, &corners)?.map(|corner| format!("{}–{}", nodes[corner], nodes[(corner + 1) % nodes.len()]));
         let help = "list its nodes in order around it, counter-clockwise";

@@ -11,7 +11,7 @@ use crate::scene::file::{BodyFile, Cells, Coordinates, FillKind, Lattice, SideFi
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::BodySize;
 use crate::sim::geometry::relative_stiffness;
-use crate::sim::{Body, Carried, Dimension, IndexLists, Solids, State};
+use crate::sim::{Body, BodyError, Carried, Dimension, IndexLists, Solids, State};
 use glam::DVec3;
 use localshape_mesh::{Cage, Filled, Group};
 use std::collections::BTreeMap;
@@ -41,6 +41,11 @@ impl BodyTable<'_> {
     /// The interpretation of elements with four, five, six and eight nodes, unless they say.
     fn solids(&self, usual: Solids) -> Solids {
         if self.file.convex { Solids::Convex } else { usual }
+    }
+
+    /// A body, or `None` after reporting what the checks of its table have not found.
+    fn sound(&self, made: Result<Body, BodyError>, report: &mut Collector<'_>) -> Option<Body> {
+        made.map_err(|error| report.at(&self.place, error.to_string(), "correct its nodes, elements or masses")).ok()
     }
 
     /// The resolved body in an initial state, whose edges have a length (m), or else their mean one.
@@ -183,14 +188,15 @@ fn generated(table: &BodyTable<'_>, generator: Generator<'_>, report: &mut Colle
     let dimension = generator.dimension();
     let along = check_generator(generator, table, report);
     let Made { nodes: rest, elements } = generator.make(along?);
-    let count = rest.len();
-    let mut body = Body::new(dimension, rest, vec![1.0; count], elements, table.solids(Solids::Ordered), None);
+    let solids = table.solids(Solids::Ordered);
+    let made = Body::builder(rest).dimension(dimension).elements(elements).solids(solids).build();
+    let body = table.sound(made, report)?;
     let mass = mass::resolve(table, &body, None, report);
-    let initial = start(table, body.rest.clone(), None, dimension, report);
+    let initial = start(table, body.rest().to_vec(), None, dimension, report);
     if report.total() > before {
         return None;
     }
-    body.mass = mass?;
+    let body = table.sound(body.with_masses(mass?), report)?;
     let side = generator.side();
     Some(SceneBody { has_cells: side.is_some(), ..table.resolved(body, initial, side) })
 }
@@ -201,26 +207,28 @@ fn filled(table: &BodyTable<'_>, of: Filled, side: f64, report: &mut Collector<'
     let Filled { cage: Cage { nodes, elements, filled, convex, groups, volumes, overlap }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let measures = surface.measures();
-    let count = nodes.len();
-    let mut body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, solids, None);
-    body.fill = filled;
+    let carried = Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights });
+    let made = Body::builder(nodes).elements(elements).solids(solids).fill(filled).carried(carried).build();
+    let mut body = table.sound(made, report)?;
     // Cubes are all alike.
-    let is_alike = file.fill.as_ref().is_none_or(|fill| fill.with == FillKind::Cubes);
-    body.stiffness = (!is_alike).then(|| relative_stiffness(&body, side));
-    body.carried = Some(Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights }));
+    if file.fill.as_ref().is_some_and(|fill| fill.with != FillKind::Cubes) {
+        let stiffness = relative_stiffness(&body, side);
+        body = table.sound(body.with_stiffness(stiffness), report)?;
+    }
     let mass = mass::resolve(table, &body, volumes, report);
-    let initial = start(table, body.rest.clone(), None, Dimension::Space, report);
+    let initial = start(table, body.rest().to_vec(), None, Dimension::Space, report);
     if report.total() > before {
         return None;
     }
-    body.mass = mass?;
+    let mut mass = mass?;
     if let Some(density) = file.density
         && measures.closed
     {
         // Tetrahedra and polyhedra fill it a little more or less, but its mass is that of its own volume, where shells count once.
-        let found: f64 = body.mass.iter().sum();
-        body.mass.iter_mut().for_each(|mass| *mass *= density * (measures.volume - overlap) / found);
+        let found: f64 = mass.iter().sum();
+        mass.iter_mut().for_each(|mass| *mass *= density * (measures.volume - overlap) / found);
     }
+    let body = table.sound(body.with_masses(mass), report)?;
     Some(SceneBody { groups, ..table.resolved(body, initial, Some(side)) })
 }
 
@@ -301,12 +309,13 @@ fn listed(table: &BodyTable<'_>, lists: Lists, report: &mut Collector<'_>) -> Op
     if table.flawed || report.total() > before || elements.is_empty() {
         return None;
     }
-    let is_listed = masses.is_some();
-    let mass = masses.unwrap_or_else(|| vec![1.0; count]);
-    let mut body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
-    if !is_listed {
-        body.mass = mass::resolve(table, &body, None, report)?;
-    }
+    let made = Body::builder(rest).dimension(dimension).elements(elements).solids(solids).faces(faces).build();
+    let body = table.sound(made, report)?;
+    let masses = match masses {
+        Some(listed) => listed,
+        None => mass::resolve(table, &body, None, report)?,
+    };
+    let body = table.sound(body.with_masses(masses), report)?;
     Some(SceneBody { springs, ..table.resolved(body, initial, None) })
 }
 

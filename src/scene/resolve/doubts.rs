@@ -62,8 +62,8 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
     }
     let simulated = || (0..).zip(&scene.runs).filter(|(_, run)| run.recording.is_none());
     let steps = |run| scene.frame_step(run, last);
-    let elements = |run: &Run| run.body().elements.len();
-    let corners = |run: &Run| run.body().elements.indices().len().max(8) as f64;
+    let elements = |run: &Run| run.body().elements().len();
+    let corners = |run: &Run| run.body().elements().indices().len().max(8) as f64;
     let seconds: f64 = simulated().map(|(at, run)| steps(at) as f64 * corners(run) * CORNER).sum();
     if seconds > LONG {
         let hours = seconds / 3600.0;
@@ -141,8 +141,7 @@ fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>
 fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
     /// Longer bodies are rarely meant to be that long (m).
     const LONG: f64 = 50.0;
-    let length =
-        |SceneBody { body, .. }: &SceneBody| longest(body.carried.as_ref().map_or(&body.rest, |fine| &fine.rest));
+    let length = |SceneBody { body, .. }: &SceneBody| longest(body.carried().map_or(body.rest(), |fine| &fine.rest));
     let sizes = scene.bodies.iter().map(length).zip(typed.file.body.iter().flatten()).enumerate();
     let long: Vec<_> = sizes.filter(|(_, (length, file))| *length >= LONG && file.scale.is_none()).collect();
     if let Some(&(at, (length, file))) = long.first() {

@@ -187,9 +187,9 @@ fn repeated<'l>(
 pub(in crate::scene) fn mean_edge(body: &Body) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let topology = body.topology();
-    for element in 0..body.elements.len() {
+    for element in 0..body.elements().len() {
         for [a, b] in topology.edges_of(element) {
-            sum += body.rest[a as usize].distance(body.rest[b as usize]);
+            sum += body.rest()[a as usize].distance(body.rest()[b as usize]);
             count += 1.0;
         }
     }

@@ -44,7 +44,7 @@ pub(super) fn resolve(
     report: &mut Collector<'_>,
 ) -> Option<Vec<SceneGrip>> {
     let mut all: Vec<SceneGrip> = Vec::new();
-    let dimension = bodies.first()?.body.dimension;
+    let dimension = bodies.first()?.body.dimension();
     let layered: Vec<_> = bodies.iter().map(Layered::new).collect();
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };

@@ -20,7 +20,7 @@ pub(super) fn resolve(
         (Some(density), _) => {
             let volumes = volumes();
             if let Some(node) = volumes.iter().position(|&volume| volume <= 0.0) {
-                let (measure, per) = match body.dimension {
+                let (measure, per) = match body.dimension() {
                     Dimension::Plane => ("an area", "area"),
                     Dimension::Space => ("a volume", "volume"),
                 };

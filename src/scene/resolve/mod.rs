@@ -144,7 +144,7 @@ impl<'a> Typed<'a> {
         let sound: Vec<_> = bodies.iter().flatten().filter(|_| !flawed.contains("body")).collect();
         let obstacles = obstacles::resolve(&file.obstacle, dimension, &sound, report);
         let bodies: Option<Vec<_>> = bodies.into_iter().collect();
-        let mut bodies = bodies.filter(|bodies| bodies.iter().all(|body| Some(body.body.dimension) == dimension));
+        let mut bodies = bodies.filter(|bodies| bodies.iter().all(|body| Some(body.body.dimension()) == dimension));
         let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&file.hold, &file.grab, bodies, report));
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);

@@ -97,7 +97,7 @@ fn named(
     let bodies: Vec<_> = bodies.iter().map(|one| one.body).collect();
     let of_body = |body: &&SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
     let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
-    let is_flat = bodies[0].body.dimension == Dimension::Plane;
+    let is_flat = bodies[0].body.dimension() == Dimension::Plane;
     let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
     let side = Side::ALL.into_iter().find(|side| typed(side) == name);
     let there = side.filter(is_there);
@@ -140,9 +140,9 @@ fn of_side(side: Side, body: &Body) -> Vec<u32> {
         Side::Back => DVec3::NEG_Z,
     };
     let along = |node: &DVec3| node.dot(outwards);
-    let most = body.rest.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let most = body.rest().iter().map(along).fold(f64::NEG_INFINITY, f64::max);
     let close = ROUND_OFF * body.extent();
-    (0..).zip(&body.rest).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
+    (0..).zip(body.rest()).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
 }
 
 /// The nodes of each body that start in a region.
@@ -152,7 +152,7 @@ fn within(
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
-    let dimension = bodies[0].body.body.dimension;
+    let dimension = bodies[0].body.body.dimension();
     let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
     let nodes: Vec<Vec<u32>> = match region {
         RegionFile { of: Some(of), within: Some(within), .. } => {
@@ -205,7 +205,7 @@ struct Layers {
 fn layers_of(body: &Body) -> Vec<Layers> {
     let close = ROUND_OFF * body.extent();
     let along = |axis: usize| {
-        let at = |node: usize| body.rest[node][axis];
+        let at = |node: usize| body.rest()[node][axis];
         let mut order: Vec<usize> = (0..body.len()).collect();
         order.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
         let (mut of, mut sizes) = (vec![0; order.len()], Vec::new());
@@ -215,7 +215,7 @@ fn layers_of(body: &Body) -> Vec<Layers> {
         }
         Layers { of, sizes }
     };
-    (0..if body.dimension == Dimension::Plane { 2 } else { 3 }).map(along).collect()
+    (0..if body.dimension() == Dimension::Plane { 2 } else { 3 }).map(along).collect()
 }
 
 /// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at
@@ -224,7 +224,7 @@ fn layers_of(body: &Body) -> Vec<Layers> {
 fn warn_of_rest(nodes: &[u32], of: &Layered<'_>, path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let Layered { body, layers } = of;
     let layers = layers.get_or_init(|| layers_of(&body.body));
-    let (position, dimension) = (&body.initial.position, body.body.dimension);
+    let (position, dimension) = (&body.initial.position, body.body.dimension());
     let taken = layers.iter().map(|layers| {
         let mut taken = vec![0; layers.sizes.len()];
         nodes.iter().for_each(|&node| taken[layers.of[node as usize] as usize] += 1);

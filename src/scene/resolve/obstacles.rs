@@ -138,17 +138,17 @@ fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], rep
     let (pose, pivot) = (obstacle.pose(0.0), obstacle.pivot);
     let (low, high) = bounds(&body.initial.position);
     let near = |point: &DVec3| point.cmpge(low).all() && point.cmple(high).all();
-    let points = inner_points(&obstacle.shape, body.body.dimension);
+    let points = inner_points(&obstacle.shape, body.body.dimension());
     let points: Vec<_> = points.into_iter().map(|point| pose.apply(pivot, point)).filter(near).collect();
     // For large bodies fewer points are tested, but always the centre of the obstacle.
-    let faces = body.body.faces.nodes.len().max(1);
+    let faces = body.body.faces().nodes.len().max(1);
     let stride = (points.len() * faces).div_ceil(MOST_COMPARED).max(1);
     let is_within = |&point: &DVec3| is_inside(point, &body.body, &body.initial.position);
     let within = points.into_iter().step_by(stride).find(is_within);
     if let Some(point) = within {
         let [x, y, z] = point.to_array().map(|at| rounded(at, 4) + 0.0);
         let point =
-            if body.body.dimension == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
+            if body.body.dimension() == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
         let message = format!("this {name} starts inside {of}, at {point}, between its nodes");
         report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside");
     }

@@ -137,7 +137,7 @@ type Listed = (Lists, usize, Vec<String>);
 impl Own {
     /// The recording of a body, and the body unless it is the whole of a run.
     fn of(self, recorded: Recorded, whole: &Body, source: &ListSource) -> Result<(Recorded, Option<Listed>), Flaw> {
-        let dimension = whole.dimension;
+        let dimension = whole.dimension();
         let wrong = match (dimension, recorded.columns) {
             (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
             (Dimension::Plane, 3) if !recorded.is_flat => {
@@ -165,12 +165,12 @@ impl Own {
                 Err(Flaw::new("rest", "leaves the plane of the scene; expected z = 0, or 2 coordinates"))
             }
             Self::Rest(own) => {
-                let is_same = are_near(&own.nodes, whole) && are_alike(&own.elements, &whole.elements);
+                let is_same = are_near(&own.nodes, whole) && are_alike(&own.elements, whole.elements());
                 Ok((recorded, (!is_same).then_some((Lists { dimension, ..*own }, 0, Vec::new()))))
             }
             // First with all points: nodes of springs may belong to no cell.
             Self::Moment { cells, has_elements, .. }
-                if is_as_long && (!has_elements || are_alike(&cells.corners, &whole.elements)) =>
+                if is_as_long && (!has_elements || are_alike(&cells.corners, whole.elements())) =>
             {
                 Ok((recorded, None))
             }
@@ -178,7 +178,7 @@ impl Own {
                 let wrong = |error: ReadError| Flaw { help: error.help, ..Flaw::new("", error.message) };
                 let Volume { places, solids, points: nodes, cells: elements, turned, notes, .. } =
                     cells.elements(dimension).map_err(wrong)?;
-                let is_same = nodes.len() == whole.len() && are_alike(&elements, &whole.elements);
+                let is_same = nodes.len() == whole.len() && are_alike(&elements, whole.elements());
                 let own = Lists { solids, ..Lists::new(source.clone(), dimension, nodes, elements) };
                 Ok((recorded.only(places), (!is_same).then_some((own, turned, notes))))
             }
@@ -237,7 +237,7 @@ fn are_near(nodes: &[DVec3], whole: &Body) -> bool {
     /// The greatest distance of two equal nodes, as a share of the body's size.
     const APART: f64 = 1e-6;
     let near = APART * whole.extent();
-    nodes.len() == whole.len() && nodes.iter().zip(&whole.rest).all(|(one, other)| one.distance(*other) <= near)
+    nodes.len() == whole.len() && nodes.iter().zip(whole.rest()).all(|(one, other)| one.distance(*other) <= near)
 }
 
 /// Whether elements have the same nodes. Programs list those of some kinds in other orders.

@@ -123,7 +123,7 @@ impl Resolved<'_> {
         });
         let resolved: Vec<_> = resolved.collect();
         let models = resolved.into_iter().collect::<Option<Vec<_>>>()?;
-        warn_without_effect(of.iter().map(|&at| &self.bodies[at].body).zip(&models), typed, report);
+        warn_without_effect(of.iter().map(|&at| &self.bodies[at].body), typed, report);
         Some(models)
     }
 
@@ -179,13 +179,13 @@ impl Resolved<'_> {
 
 /// Warns of parameters that have no effect on any of the bodies of their model.
 fn warn_without_effect<'a>(
-    parts: impl Iterator<Item = (&'a Arc<Body>, &'a Arc<dyn ElasticModel>)>,
+    bodies: impl Iterator<Item = &'a Arc<Body>>,
     typed: &[TypedModel<'_>],
     report: &mut Collector<'_>,
 ) {
-    let parts: Vec<_> = parts.zip(typed).collect();
+    let parts: Vec<_> = bodies.zip(typed).collect();
     for models in parts.chunk_by(|(_, one), (_, other)| one.path == other.path) {
-        let idle = models.iter().map(|((body, model), _)| model.without_effect(body)).collect::<Option<Vec<_>>>();
+        let idle = models.iter().map(|(body, typed)| typed.model.without_effect(body)).collect::<Option<Vec<_>>>();
         if let Some(Misfit { key, message }) = idle.and_then(|idle| idle.into_iter().next()) {
             report.warn(&key_path![models[0].1.path; key], message, None);
         }

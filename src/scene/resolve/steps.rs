@@ -34,7 +34,8 @@ impl<'a> Steps<'a> {
         parts: &[Parts],
         report: &mut Collector<'_>,
     ) -> Self {
-        let periods = parts.iter().flat_map(Parts::iter).map(|(model, body)| model.shortest_period(body));
+        let periods =
+            parts.iter().flat_map(Parts::iter).map(|(model, body)| model.properties(body).shortest_period(body));
         let cycle = periods.fold(f64::INFINITY, f64::min);
         let own = own_limits(runs, time, parts);
         warn_of_held_steps(runs, time, parts, &own, report);

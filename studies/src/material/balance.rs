@@ -48,7 +48,7 @@ impl Forces {
     /// cubic cancels, too.
     pub(super) fn linear(&mut self, body: &Body, shape: &[DVec3], amplitude: f64) -> Vec<DVec3> {
         let mut by = |amplitude: f64| {
-            let moved: Vec<_> = body.rest.iter().zip(shape).map(|(&rest, &shape)| rest + shape * amplitude).collect();
+            let moved: Vec<_> = body.rest().iter().zip(shape).map(|(&rest, &shape)| rest + shape * amplitude).collect();
             self.at(&moved)
         };
         let [near, far] = [amplitude, 2.0 * amplitude].map(|amplitude| {
@@ -76,10 +76,10 @@ pub(super) fn balance(
     held: &[[bool; 3]],
     start: &[DVec3],
 ) -> Option<Vec<DVec3>> {
-    let axes = if body.dimension == Dimension::Plane { 2 } else { 3 };
+    let axes = if body.dimension() == Dimension::Plane { 2 } else { 3 };
     let (count, small) = (axes * body.len(), SMALL * body.extent());
     let reach = |nodes: &[u32]| nodes.iter().max().zip(nodes.iter().min()).map_or(0, |(high, low)| high - low);
-    let reach = body.elements.iter().map(reach).max()? as usize;
+    let reach = body.elements().iter().map(reach).max()? as usize;
     let (apart, width) = (2 * reach + 1, axes * (reach + 1));
     let is_held = |at: usize| held[at / axes][at % axes];
     let (mut forces, mut position) = (Forces::new(body, model, start), start.to_vec());
@@ -138,12 +138,13 @@ pub(super) fn settle(
     /// The last change in the time in which damping takes a velocity to `1/e`, relative to the greatest displacement.
     const LAST: f64 = 1e-5;
     let projection = model.projection(body)?;
-    let shift: Vec<_> = start.iter().zip(&body.rest).map(|(start, rest)| *start - *rest).collect();
+    let shift: Vec<_> = start.iter().zip(body.rest()).map(|(start, rest)| *start - *rest).collect();
     let work: f64 = shift.iter().zip(load).map(|(shift, load)| shift.dot(*load)).sum();
-    let inertia: f64 = shift.iter().zip(&body.mass).map(|(shift, mass)| mass * shift.length_squared()).sum();
+    let inertia: f64 = shift.iter().zip(body.mass()).map(|(shift, mass)| mass * shift.length_squared()).sum();
     let rate = 2.0 * libm::sqrt(work / inertia);
     let far = shift.iter().map(|shift| shift.length()).fold(0.0, f64::max);
-    let light: Vec<_> = body.mass.iter().zip(held).map(|(mass, held)| if held[0] { 0.0 } else { 1.0 / mass }).collect();
+    let light: Vec<_> =
+        body.mass().iter().zip(held).map(|(mass, held)| if held[0] { 0.0 } else { 1.0 / mass }).collect();
     let (mut position, mut velocity) = (start.to_vec(), vec![DVec3::ZERO; body.len()]);
     let mut memory = model.start(body, start);
     let mut next = memory.clone();

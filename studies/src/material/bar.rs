@@ -29,13 +29,13 @@ impl Bar {
     }
 
     fn layer(body: &Body, height: f64, side: f64) -> Vec<usize> {
-        (0..body.len()).filter(|&node| (body.rest[node].z - height).abs() < 1e-6 * side).collect()
+        (0..body.len()).filter(|&node| (body.rest()[node].z - height).abs() < 1e-6 * side).collect()
     }
 
     /// A load (N) on the end, on each node in proportion to the area of the end around it.
     fn load(&self, total: DVec3) -> Vec<DVec3> {
         let [low, high] = [f64::min, f64::max].map(|pick| {
-            let rest = self.ends[1].iter().map(|&node| self.body.rest[node]);
+            let rest = self.ends[1].iter().map(|&node| self.body.rest()[node]);
             rest.reduce(|one, other| DVec3::new(pick(one.x, other.x), pick(one.y, other.y), 0.0)).unwrap_or_default()
         });
         let is_rim = |at: f64, low: f64, high: f64| (at - low).abs().min((at - high).abs()) < 1e-6 * self.side;
@@ -43,9 +43,9 @@ impl Bar {
             let rims = [is_rim(rest.x, low.x, high.x), is_rim(rest.y, low.y, high.y)];
             rims.iter().map(|&is_rim| if is_rim { 0.5 } else { 1.0 }).product::<f64>()
         };
-        let whole: f64 = self.ends[1].iter().map(|&node| part(self.body.rest[node])).sum();
+        let whole: f64 = self.ends[1].iter().map(|&node| part(self.body.rest()[node])).sum();
         let mut load = vec![DVec3::ZERO; self.body.len()];
-        self.ends[1].iter().for_each(|&node| load[node] = total * (part(self.body.rest[node]) / whole));
+        self.ends[1].iter().for_each(|&node| load[node] = total * (part(self.body.rest()[node]) / whole));
         load
     }
 
@@ -102,14 +102,14 @@ impl Bar {
         self.ends[0].iter().for_each(|&node| held[node][2] = true);
         // The end neither moves across nor turns: one corner is held, and the next one along x does not move along y.
         let &corner = self.ends[0].first()?;
-        let rest = |node: usize| self.body.rest[node];
+        let rest = |node: usize| self.body.rest()[node];
         let is_beside = |&&node: &&usize| node != corner && rest(node).y == rest(corner).y;
         let &other = self.ends[0].iter().rev().find(is_beside)?;
         held[corner] = [true; 3];
         held[other][1] = true;
         let [width, depth] = self.section;
         let load = STRAIN * about.young * width * depth;
-        let found = balance(&self.body, model, &self.load(DVec3::Z * load), &held, &self.body.rest)?;
+        let found = balance(&self.body, model, &self.load(DVec3::Z * load), &held, self.body.rest())?;
         let layers = [-0.25, 0.25].map(|share| {
             let height = libm::round((share + 0.5) * self.length / self.side) * self.side - 0.5 * self.length;
             (height, Self::layer(&self.body, height, self.side))
@@ -119,7 +119,7 @@ impl Bar {
         // The sides at half of the depth away from the middle.
         let middle: Vec<_> = layers.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
         let side = |sign: f64| -> Vec<usize> {
-            let is_there = |&node: &usize| (self.body.rest[node].x - 0.5 * sign * depth).abs() < 1e-6 * self.side;
+            let is_there = |&node: &usize| (self.body.rest()[node].x - 0.5 * sign * depth).abs() < 1e-6 * self.side;
             middle.iter().copied().filter(is_there).collect()
         };
         let [left, right] = [-1.0, 1.0].map(|sign| mean_shift(&self.body, &found, &side(sign)).x);

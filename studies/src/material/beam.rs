@@ -146,7 +146,7 @@ fn tip(model: &Model, poisson: f64, across: u32) -> Tip {
     let made = bar.model(model, Material { poisson, ..MATERIAL });
     let ratio = made.as_ref().and_then(|(model, material)| {
         let load = LOAD * bar.rigidity(*material) / (bar.length * bar.length);
-        let found = bar.bent(model.as_ref(), load, &bar.body.rest)?;
+        let found = bar.bent(model.as_ref(), load, bar.body.rest())?;
         Some(bar.tip(&found).x / timoshenko(*material, bar.length, bar.section, load))
     });
     Tip { model: *model, poisson, across, material: made.map(|(_, material)| material), ratio }
@@ -159,7 +159,7 @@ fn bend(model: &Model, along: u32) -> Bent {
     let Some((made, material)) = bar.model(model, MATERIAL) else {
         return Bent { model: *model, ends: vec![None; MATTIASSON.len()] };
     };
-    let (mut position, mut before) = (Some(bar.body.rest.clone()), 0.0);
+    let (mut position, mut before) = (Some(bar.body.rest().to_vec()), 0.0);
     let end = |&(load, _): &(f64, Option<[f64; 2]>)| {
         let parts = libm::ceil((load - before) / MOST) as u32;
         for part in 1..=parts {
@@ -223,11 +223,11 @@ const STIFFNESS: f64 = 0.5 * MATERIAL.young * SIDE;
 fn forces(model: &Model, cells: [u32; 3]) -> (Forces, Bar) {
     let bar = Bar::new(Elements::Cells, cells, SIDE, 1.0);
     let made = model.on(&bar.body, MATERIAL, SIDE).expect("a lattice of cubes");
-    (Forces::new(&bar.body, made.as_ref(), &bar.body.rest), bar)
+    (Forces::new(&bar.body, made.as_ref(), bar.body.rest()), bar)
 }
 
 fn shape_of(bar: &Bar, shape: impl Fn(&DVec3) -> DVec3) -> Vec<DVec3> {
-    bar.body.rest.iter().map(shape).collect()
+    bar.body.rest().iter().map(shape).collect()
 }
 
 /// The greatest deviation of the forces of shapes from `−m ω²` times them, with `m ω²` (N/m) for each, relative to it.
@@ -240,7 +240,7 @@ fn off(
 ) -> f64 {
     let of_shape = |(shape, expected): (Vec<DVec3>, f64)| {
         let found = forces.linear(&bar.body, &shape, amplitude);
-        let nodes = found.iter().zip(&shape).zip(&bar.body.rest).filter(|(_, rest)| counts(rest));
+        let nodes = found.iter().zip(&shape).zip(bar.body.rest()).filter(|(_, rest)| counts(rest));
         nodes.map(|((&force, &shape), _)| (force + shape * expected).length() / expected).fold(0.0, f64::max)
     };
     shapes.map(of_shape).fold(0.0, f64::max)

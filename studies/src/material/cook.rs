@@ -11,7 +11,7 @@ use crate::progress::Watch;
 use crate::study::{Findings, Study};
 use crate::table::{Cell, Table};
 use glam::DVec3;
-use localshape::sim::{Body, Dimension, Material, Solids};
+use localshape::sim::{Body, Dimension, Material};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -90,17 +90,17 @@ pub(crate) fn measure(study: &Cook, watch: &Watch<'_>) -> Option<Results> {
 fn deflection(model: &Model, cells: u32) -> Option<f64> {
     let body = panel(model, cells);
     let made = model.on(&body, MATERIAL, 1.0)?;
-    let held: Vec<_> = body.rest.iter().map(|rest| [rest.x == 0.0; 3]).collect();
+    let held: Vec<_> = body.rest().iter().map(|rest| [rest.x == 0.0; 3]).collect();
     let is_right = |rest: &DVec3| (rest.x - 48.0).abs() < 1e-9;
-    let right: Vec<_> = (0..body.len()).filter(|&node| is_right(&body.rest[node])).collect();
+    let right: Vec<_> = (0..body.len()).filter(|&node| is_right(&body.rest()[node])).collect();
     let mut load = vec![DVec3::ZERO; body.len()];
     for (at, &node) in right.iter().enumerate() {
         let part = if at == 0 || at + 1 == right.len() { 0.5 } else { 1.0 };
         load[node] = DVec3::Y * (LOAD * part / f64::from(cells));
     }
-    let found = balance(&body, made.as_ref(), &load, &held, &body.rest)?;
+    let found = balance(&body, made.as_ref(), &load, &held, body.rest())?;
     let middle = right[right.len() / 2];
-    Some((found[middle].y - body.rest[middle].y) / LOAD)
+    Some((found[middle].y - body.rest()[middle].y) / LOAD)
 }
 
 /// The panel, by a bilinear map of a square block.
@@ -110,9 +110,16 @@ fn panel(model: &Model, cells: u32) -> Arc<Body> {
         let [s, t] = [rest.x / f64::from(cells) + 0.5, rest.y / f64::from(cells)];
         DVec3::new(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s), 0.0)
     };
-    let rest: Vec<_> = square.rest.iter().map(place).collect();
-    let elements = square.elements.clone();
-    Arc::new(Body::new(Dimension::Plane, rest, square.mass.clone(), elements, Solids::Ordered, None))
+    let rest: Vec<_> = square.rest().iter().map(place).collect();
+    let elements = square.elements().clone();
+    Arc::new(
+        Body::builder(rest)
+            .dimension(Dimension::Plane)
+            .elements(elements)
+            .masses(square.mass().to_vec())
+            .build()
+            .expect("a body"),
+    )
 }
 
 impl Results {

@@ -147,7 +147,7 @@ impl Elements {
 
 /// The mean of the displacements of some nodes (m).
 fn mean_shift(body: &Body, position: &[DVec3], nodes: &[usize]) -> DVec3 {
-    nodes.iter().map(|&node| position[node] - body.rest[node]).sum::<DVec3>() / nodes.len() as f64
+    nodes.iter().map(|&node| position[node] - body.rest()[node]).sum::<DVec3>() / nodes.len() as f64
 }
 
 /// A number with some decimals, or a dash.

@@ -113,13 +113,13 @@ impl Patch {
         let made = model.on(&body, material, SIDE)?;
         let strain = strain();
         let place = |&rest: &DVec3| rest + strain * rest * SIZE;
-        let uniform: Vec<_> = body.rest.iter().map(place).collect();
+        let uniform: Vec<_> = body.rest().iter().map(place).collect();
         let (low, high) = body
-            .rest
+            .rest()
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
         let held: Vec<_> =
-            body.rest.iter().map(|&rest| [(rest - low).min(high - rest).min_element() < 1e-6 * SIDE; 3]).collect();
+            body.rest().iter().map(|&rest| [(rest - low).min(high - rest).min_element() < 1e-6 * SIDE; 3]).collect();
         let load = vec![DVec3::ZERO; body.len()];
         let found = balance(&body, made.as_ref(), &load, &held, &uniform)?;
         let inside = || found.iter().zip(&uniform).zip(&held).filter(|(_, held)| !held[0]);

@@ -118,7 +118,7 @@ pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
         }
     }
     let mut worlds: Vec<_> = beams.iter().map(|(.., beam)| beam.world()).collect();
-    let steps = |beam: &Beam| (study.turn / beam.bar.body.elements.len() as u64).max(1);
+    let steps = |beam: &Beam| (study.turn / beam.bar.body.elements().len() as u64).max(1);
     // The first access to memory is not timed.
     worlds.iter_mut().for_each(|world| world.advance(1));
     let times = take_turns(worlds.len(), study.rounds, watch, |at| {
@@ -130,7 +130,7 @@ pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
     let timed = beams.into_iter().zip(times).map(|((model, across, beam), times)| Timed {
         model,
         across,
-        elements: beam.bar.body.elements.len(),
+        elements: beam.bar.body.elements().len(),
         across_length: beam.deflection,
         error: (beam.deflection / reference - 1.0).abs(),
         step: beam.step,
@@ -166,7 +166,7 @@ impl Beam {
             made = bar.model(model, material)?.0;
         }
         let load = LOAD * bar.rigidity(MATERIAL) / (bar.length * bar.length);
-        let mut position = bar.body.rest.clone();
+        let mut position = bar.body.rest().to_vec();
         for part in 1..=PARTS {
             position = bar.bent(made.as_ref(), load * f64::from(part) / f64::from(PARTS), &position)?;
         }
@@ -184,7 +184,7 @@ impl Beam {
     /// The step of a model that steps itself, and its deflection in such steps, from that in small ones: the balance of forces.
     fn settle(&mut self, load: f64, balance: &[DVec3]) -> Option<()> {
         let small = self.deflection;
-        self.step = LONGEST * self.model.shortest_period(&self.bar.body);
+        self.step = LONGEST * self.model.properties(&self.bar.body).shortest_period(&self.bar.body);
         loop {
             let found = self.bar.settled(self.model.as_ref(), load, balance, self.step)?;
             self.deflection = self.bar.tip(&found).x / self.bar.length;
@@ -199,7 +199,7 @@ impl Beam {
     /// The beam as it begins to hang, by its own weight in place of the load, which changes no time.
     fn world(&self) -> World {
         let around = Surroundings { gravity: DVec3::X, grips: vec![self.held.clone()], ..Surroundings::default() };
-        let start = State::at_rest(self.bar.body.rest.clone());
+        let start = State::at_rest(self.bar.body.rest().to_vec());
         World::new(&self.bar.body, start, self.model.as_ref(), around, Stepping::new(INTEGRATOR, self.step))
     }
 }

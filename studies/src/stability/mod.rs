@@ -12,11 +12,13 @@ mod text;
 use crate::folder::Notes;
 use crate::progress::Watch;
 use crate::study::{Findings, Study};
-use localshape::scene::description;
+use localshape::scene::{Run, description};
+use localshape::sim::model::{ElasticModel, ModelParameters};
 use localshape::sim::stability::Stability as Limit;
 use localshape::sim::{Diagnostic, Status};
 use localshape::{Limits, Scene};
 use rayon::prelude::*;
+use std::sync::Arc;
 use text::short;
 
 /// The study.
@@ -174,17 +176,18 @@ pub(crate) struct Grid {
 impl Grid {
     fn new(scene: &Scene, run: usize, damping: f64) -> Option<Self> {
         let mut scene = scene.clone();
-        let model = scene.runs[run].models[0].scaled(1.0, damping)?;
+        let model = scaled(&scene.runs[run], 1.0, damping)?;
         scene.runs[run].models[0] = model;
         let one = &scene.runs[run];
         let (model, body) = (one.models[0].as_ref(), one.body());
-        let cycle = model.shortest_period(body);
+        let properties = model.properties(body);
+        let cycle = properties.shortest_period(body);
         let predicted = Limit::of(body, model, one.integrator, &one.grips, scene.duration);
         let limit = (predicted.largest > 0.0 && predicted.largest.is_finite()).then_some(predicted.largest);
         Some(Self {
             run,
             damping,
-            rate: model.stiffness() / body.lightest(),
+            rate: properties.stiffness / body.lightest(),
             unit: limit.unwrap_or(cycle * std::f64::consts::FRAC_1_PI),
             limit: limit.map(|limit| limit / cycle),
             stretched: limit.and_then(|limit| Some(predicted.stretched? / limit)),
@@ -242,6 +245,14 @@ pub(crate) fn measure(
     Some(Results { protocol, scene: scene.clone(), grids, cells })
 }
 
+/// The model of a run with its stiffness and its damping multiplied; `None` for a model of another program.
+fn scaled(run: &Run, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+    let (model, body) = (&run.models[0], run.body());
+    let parameters = ModelParameters::of(&model.properties(body).scaled(stiffness, damping))?;
+    let springs = Some(model.springs()).filter(|springs| !springs.is_empty());
+    parameters.resolve(body, springs).ok()
+}
+
 /// Simulates a cell, until it diverges; `None` if `watch` stops it.
 fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
     /// Steps between two checks.
@@ -250,9 +261,8 @@ fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
     scene.gravity *= cell.speed * cell.speed;
     let run = &mut scene.runs[cell.run];
     run.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
-    let stiffness = cell.rate * run.body().lightest() / run.models[0].stiffness();
-    run.models[0] =
-        run.models[0].scaled(stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
+    let stiffness = cell.rate * run.body().lightest() / run.models[0].properties(run.body()).stiffness;
+    run.models[0] = scaled(run, stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
     run.step = cell.step;
     let mut world = scene.world(cell.run);
     let mut left = (scene.duration / cell.step).ceil() as u64;

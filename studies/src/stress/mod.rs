@@ -152,7 +152,7 @@ pub(crate) fn measure(steps: u64, models: &[Model], watch: &Watch<'_>) -> Option
     let row = |trial: Trial| Row {
         group: trial.group,
         name: trial.name,
-        elements: trial.body.elements.len(),
+        elements: trial.body.elements().len(),
         steps: trial.steps,
         promise: trial.promise,
         outcomes: outcomes.by_ref().take(models.len()).collect(),
@@ -254,7 +254,7 @@ impl Trial {
         };
         // Velocity Verlet comes to complete rest on a floor. XPBD steps by itself.
         let integrator = if model.kind == "xpbd" { Integrator::default() } else { Integrator::VelocityVerlet };
-        let mut world = self.world(model, integrator, State::at_rest(self.body.rest.clone()))?;
+        let mut world = self.world(model, integrator, State::at_rest(self.body.rest().to_vec()))?;
         world.advance(self.steps.min(20_000));
         let pairs = heights(state).into_iter().zip(heights(world.state()));
         Some(pairs.fold(0.0, |most: f64, (one, other)| most.max((one - other).abs())) / self.side)
@@ -273,7 +273,7 @@ struct Look {
 
 impl Look {
     fn of(trial: &Trial, world: &World) -> Self {
-        let (d, state, mass) = (world.diagnostics(), world.state(), &trial.body.mass);
+        let (d, state, mass) = (world.diagnostics(), world.state(), trial.body.mass());
         let whole: f64 = mass.iter().sum();
         let centre = mass.iter().zip(&state.position).map(|(&mass, &at)| at * mass).sum::<DVec3>() / whole;
         let (mut momenta, mut sizes) = ([DVec3::ZERO; 2], [0.0; 2]);

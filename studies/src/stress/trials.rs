@@ -90,7 +90,7 @@ fn free(group: &'static str, name: String, body: Body, start: State, elastic: El
 /// A cube of 27 cubes that meets a floor, turned obliquely, with a speed (m/s).
 fn thrown(group: &'static str, name: String, body: Body, at: DVec3, speed: f64, elastic: Elastic, side: f64) -> Trial {
     let turn = DQuat::from_xyzw(0.11, 0.23, -0.17, 1.0).normalize();
-    let turned: Vec<_> = body.rest.iter().map(|&rest| turn * rest).collect();
+    let turned: Vec<_> = body.rest().iter().map(|&rest| turn * rest).collect();
     let lowest = turned.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
     let position: Vec<_> = turned.into_iter().map(|node| at + node - DVec3::Y * lowest).collect();
     let velocity = vec![DVec3::Y * -speed; position.len()];
@@ -119,7 +119,7 @@ fn pressed() -> Trial {
     let (body, height) = (lattice(3, SIDE, 1.0), 3.0 * SIDE);
     let normal = -DVec3::new(0.05, 1.0, 0.03).normalize();
     let mut random = Random(4);
-    let start = body.rest.iter().map(|&rest| rest + random.direction() * 1e-3 * SIDE).collect();
+    let start = body.rest().iter().map(|&rest| rest + random.direction() * 1e-3 * SIDE).collect();
     let key = |time, depth: f64| Key { time, offset: Offset { shift: DVec3::Y * -depth, rotation: DVec3::ZERO } };
     // Oblique, it would touch a corner at the body's height.
     let keys = vec![key(0.0, -0.1 * height), key(0.5, 0.9 * height), key(1.0, -0.1 * height)];
@@ -159,9 +159,10 @@ fn hits() -> Vec<Trial> {
         let elastic = Elastic { ratio, ..USUAL };
         all.push(alike(format!("ζ = {ratio}"), lattice(3, SIDE, 1.0), DVec3::ZERO, elastic, SIDE));
     }
-    let mut body = lattice(3, SIDE, 1.0);
+    let body = lattice(3, SIDE, 1.0);
     let last = body.len() as f64 - 1.0;
-    body.mass = (0..body.len()).map(|node| libm::exp10(6.0 * node as f64 / last)).collect();
+    let masses = (0..body.len()).map(|node| libm::exp10(6.0 * node as f64 / last)).collect();
+    let body = body.with_masses(masses).expect("masses above 0");
     all.push(Trial {
         // The heaviest nodes oscillate a thousand times slower, and their damping ratio is a thousandth.
         steps: 100_000,
@@ -196,7 +197,7 @@ fn starts() -> Vec<Trial> {
         // Perfect symmetry would be an equilibrium, though not a stable one.
         let shift = |rest: &DVec3| Random(rest.x.to_bits()).direction() * 1e-3 * SIDE;
         let place = |rest: &DVec3| map(*rest - middle, &mut random) + shift(rest);
-        let position = body.rest.iter().map(place).collect();
+        let position = body.rest().iter().map(place).collect();
         let elastic = Elastic { ratio: 0.2, ..USUAL };
         free("Starts", name.to_owned(), body, State::at_rest(position), elastic, SIDE)
     };
@@ -235,7 +236,12 @@ fn elements() -> Vec<Trial> {
         let stretch = DMat3::from_diagonal(DVec3::new(1.4, 0.7, 1.1));
         let flat = |vector: DVec3| if dimension == Dimension::Plane { vector.with_z(0.0) } else { vector };
         let position = rest.iter().map(|&at| stretch * at + flat(random.direction() * 0.1)).collect();
-        let body = Body::new(dimension, rest.clone(), vec![1.0; rest.len()], elements, Solids::Convex, None);
+        let body = Body::builder(rest.clone())
+            .dimension(dimension)
+            .elements(elements)
+            .solids(Solids::Convex)
+            .build()
+            .expect("a body");
         free("Elements", name.to_owned(), body, State::at_rest(position), USUAL, 1.0)
     };
     cases.into_iter().map(trial).collect()
@@ -244,14 +250,14 @@ fn elements() -> Vec<Trial> {
 /// Very many steps at rest on a level floor, and spinning.
 fn long(steps: u64) -> [Trial; 2] {
     let body = lattice(2, SIDE, 1.0);
-    let start = State::at_rest(body.rest.clone());
+    let start = State::at_rest(body.rest().to_vec());
     let name = format!("{steps} steps");
     let rest = free("At rest", name.clone(), body.clone(), start, USUAL, SIDE);
     let around = Surroundings { gravity: DVec3::Y * -GRAVITY, obstacles: vec![floor(0.0, 0.5, 0.3)], ..rest.around };
     let rest = Trial { around, steps, promise: Promise::Settled(0.01), is_free: false, is_still: true, ..rest };
     let (spin, middle) = (DVec3::new(3.0, 10.0, -5.0), DVec3::splat(SIDE));
-    let velocity = body.rest.iter().map(|&rest| spin.cross(rest - middle)).collect();
-    let start = State::new(body.rest.clone(), velocity);
+    let velocity = body.rest().iter().map(|&rest| spin.cross(rest - middle)).collect();
+    let start = State::new(body.rest().to_vec(), velocity);
     let spun = free("Spinning", name, body, start, Elastic { ratio: 0.0, ..USUAL }, SIDE);
     // Centrifugal forces stretch it by a part of (spin/ω)², which is 0.013.
     [rest, Trial { steps, promise: Promise::Restored(0.1), ..spun }]
@@ -267,7 +273,7 @@ fn lattice(cells: u32, side: f64, mass: f64) -> Body {
     let mut elements = IndexLists::default();
     grid(cells).for_each(|at| elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|bit| corner(at, bit))));
     let mass = vec![mass; rest.len()];
-    Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None)
+    Body::builder(rest).elements(elements).masses(mass).build().expect("a body")
 }
 
 fn floor(height: f64, restitution: f64, friction: f64) -> Obstacle {
@@ -279,6 +285,6 @@ fn floor(height: f64, restitution: f64, friction: f64) -> Obstacle {
 /// The most elements that share a node.
 fn most_elements(body: &Body) -> f64 {
     let mut count = vec![0u32; body.len()];
-    body.elements.indices().iter().for_each(|&node| count[node as usize] += 1);
+    body.elements().indices().iter().for_each(|&node| count[node as usize] += 1);
     f64::from(count.into_iter().max().unwrap_or(1))
 }

@@ -1,7 +1,7 @@
 //! A model that counts how often its forces are evaluated, and ends runs that evaluate them too often.
 
 use glam::DVec3;
-use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
+use localshape::sim::model::{ElasticModel, ForceModel, Properties, Report, Scratch, Share};
 use localshape::sim::{Body, Nodes};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -34,12 +34,8 @@ impl Counting {
 }
 
 impl ElasticModel for Counting {
-    fn stiffness(&self) -> f64 {
-        self.model.stiffness()
-    }
-
-    fn shortest_period(&self, body: &Body) -> f64 {
-        self.model.shortest_period(body)
+    fn properties(&self, body: &Body) -> Properties {
+        self.model.properties(body)
     }
 
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {

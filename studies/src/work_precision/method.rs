@@ -6,9 +6,9 @@ use crate::methods::{BLANES_MOAN, FOREST_RUTH, KAHAN_LI};
 use crate::table::typed;
 use glam::DVec3;
 use localshape::sim::integrate::{ByComposition, Composition};
-use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::RotationReading;
-use localshape::sim::{Integrator, Kernel, Status, World};
+use localshape::sim::model::{ElasticModel, ModelParameters, Setting};
+use localshape::sim::{Body, Integrator, Kernel, Status, World};
 use std::sync::Arc;
 
 /// An integrator, with a solver of rotations.
@@ -101,7 +101,7 @@ impl Method {
     /// The model of a run, with the rotations of this method; `None` if the model has no choice of them.
     pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
         let model = &subject.scene.runs[subject.run].models[0];
-        let with = |rotation| model.with_rotation(subject.body(), rotation);
+        let with = |rotation| with_rotation(&**model, subject.body(), rotation);
         match self {
             Self::Reading(rotation) => with(rotation),
             _ => with(RotationReading::Robust).or_else(|| Some(Arc::clone(model))),
@@ -118,6 +118,15 @@ impl Method {
         let (integrator, composition) = self.integrator();
         composition.is_none() && Kernel::of(model, integrator) == Kernel::Fast
     }
+}
+
+/// A model with its rotations computed by another method; `None` if it has no choice of them.
+fn with_rotation(model: &dyn ElasticModel, body: &Body, rotation: RotationReading) -> Option<Arc<dyn ElasticModel>> {
+    let mut properties = model.properties(body);
+    let own = properties.parameters.iter_mut().find(|parameter| parameter.name == "rotation")?;
+    own.value = Setting::Choice(rotation.name());
+    properties.parameters.retain(|parameter| parameter.name != "passes" || rotation.has_passes());
+    ModelParameters::of(&properties)?.resolve(body, None).ok()
 }
 
 /// The number of moments of a run, without its start, at which errors are measured: a power of two.

@@ -36,7 +36,7 @@ fn no_block_diverges_while_it_is_timed() {
     let scene = block(sides[0]);
     for run in 0..scene.runs.len() {
         let mut world = scene.world(run);
-        world.advance(u64::from(rounds) * turn / scene.bodies[0].body.elements.len() as u64);
+        world.advance(u64::from(rounds) * turn / scene.bodies[0].body.elements().len() as u64);
         assert_eq!(world.status(), Status::Ok, "{}", scene.runs[run].name);
     }
 }

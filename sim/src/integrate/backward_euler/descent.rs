@@ -7,6 +7,7 @@
 //! as long as it falls.
 
 use super::{BackwardEuler, MOST_LINEAR, MOST_NEWTON, Nodes, State, Step, dot};
+use crate::surroundings::Surroundings;
 use glam::DVec3;
 
 /// The shortest share of a Newton step, and one over the longest.
@@ -20,7 +21,9 @@ impl BackwardEuler {
     /// Goes along Newton steps as far as the potential falls enough; nowhere with a model that has no energy, or where the residual was less
     /// before. With damping each step has a potential of its own, so that only the residual tells whether it leads on.
     pub(super) fn descend(&mut self, step: &Step<'_>, state: &State, next: &mut State) {
-        if step.energy(&next.position, &state.memory.model).is_none() {
+        // Nor is there a potential of forces that change with positions.
+        let has_loads = !step.system.surroundings.loads.is_empty();
+        if has_loads || step.energy(&next.position, &state.memory.model).is_none() {
             return;
         }
         let (found, before) = (next.velocity.clone(), dot(step, &self.residual, &self.residual));
@@ -32,7 +35,7 @@ impl BackwardEuler {
             if is_damped {
                 self.moved[1].fill(DVec3::ZERO);
                 let at = Nodes { position: &next.position, velocity: &self.moved[1] };
-                step.evaluate(at, &state.memory.model, &mut self.evaluations[2]);
+                step.evaluate(1.0, at, &state.memory.model, &mut self.evaluations[2]);
             }
             self.solve(step, state, next, MOST_LINEAR[1], is_damped);
             self.from.clone_from(&next.velocity);
@@ -57,11 +60,13 @@ impl BackwardEuler {
         if step.is_damped() {
             let [here, there, still] = &mut self.evaluations;
             let at = Nodes { position: &next.position, velocity: direction };
-            step.evaluate(at, &state.memory.model, there);
+            step.evaluate(1.0, at, &state.memory.model, there);
             let power = |of: &[DVec3]| dot(step, direction, of);
             drag = [&here.acceleration, &there.acceleration].map(|of| power(of) - power(&still.acceleration));
         }
-        let free = |node: usize| state.velocity[node] + step.system.gravity * time;
+        let Surroundings { gravity, forces, .. } = &step.system.surroundings;
+        let push = |node: usize| forces.get(node).map_or(DVec3::ZERO, |force| *force / step.masses()[node]);
+        let free = |node: usize| state.velocity[node] + (*gravity + push(node)) * time;
         let gained: Vec<_> = self.from.iter().enumerate().map(|(node, &from)| from - free(node)).collect();
         let slope = dot(step, direction, &gained) - time * drag[0];
         let curvature = dot(step, direction, direction) - time * drag[1];

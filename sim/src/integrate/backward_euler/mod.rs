@@ -84,6 +84,10 @@ impl Method for BackwardEuler {
     fn unsolved(&self, state: &State) -> Option<Unsolved> {
         Unsolved::remembered(&state.memory.integrator)
     }
+
+    fn copy(&self) -> Box<dyn Method> {
+        Box::new(Self::new(self.scales))
+    }
 }
 
 impl BackwardEuler {
@@ -173,7 +177,7 @@ impl BackwardEuler {
             *position = from + velocity * step.interval.step;
         }
         step.place_held(1.0, next);
-        step.evaluate(next.nodes(), &state.memory.model, &mut self.evaluations[0]);
+        step.evaluate(1.0, next.nodes(), &state.memory.model, &mut self.evaluations[0]);
         let acceleration = &self.evaluations[0].acceleration;
         self.residual.clear();
         self.residual.extend((0..acceleration.len()).map(|node| {
@@ -234,7 +238,7 @@ impl BackwardEuler {
         velocity.clear();
         let before = |node: usize| if is_still { DVec3::ZERO } else { next.velocity[node] };
         velocity.extend((0..nodes).map(|node| before(node) + direction[node] * small));
-        step.evaluate(Nodes { position, velocity }, &state.memory.model, there);
+        step.evaluate(1.0, Nodes { position, velocity }, &state.memory.model, there);
         let (here, there) = (if is_still { &still.acceleration } else { &here.acceleration }, &there.acceleration);
         product.clear();
         product.extend((0..nodes).map(|node| {

@@ -37,11 +37,10 @@ const VALENCE: usize = 7;
 const SUM: usize = 4;
 
 /// The elements of a body, in parts.
+#[derive(Clone)]
 pub(crate) struct General<W> {
     set: Set,
     law: W,
-    /// Acceleration of gravity (m/s²).
-    gravity: DVec3,
     /// ΔT (s).
     step: f64,
     parts: Vec<Part>,
@@ -63,6 +62,7 @@ struct RecordAddress {
 }
 
 /// The elements of one task.
+#[derive(Clone)]
 struct Part {
     /// Number of nodes of this part only, in whole blocks.
     own: usize,
@@ -79,6 +79,7 @@ struct Part {
 }
 
 /// Elements with the same number of corners.
+#[derive(Clone)]
 struct Class {
     corners: usize,
     /// The index in the body of each.
@@ -93,6 +94,7 @@ struct Class {
 }
 
 /// The nodes that belong to several parts.
+#[derive(Clone)]
 struct Shared {
     /// The index in the body of each, in whole blocks; 0 for padding.
     index: Vec<u32>,
@@ -206,8 +208,8 @@ impl<W: Law> General<W> {
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
         let (elements, tally) = (elements.len(), Tally::default());
-        let &Conditions { gravity, step, set, .. } = conditions;
-        Self { set, law, gravity, step, parts: made, shared, sums: Vec::new(), places, elements, tally }
+        let &Conditions { step, set, .. } = conditions;
+        Self { set, law, step, parts: made, shared, sums: Vec::new(), places, elements, tally }
     }
 }
 
@@ -317,9 +319,9 @@ impl<W: Law> General<W> {
 
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
-    fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
         let (body, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
-        let of_nodes = OfNodes { of_node: self.law.of_node(), gravity: self.gravity, step: self.step };
+        let of_nodes = OfNodes { of_node: self.law.of_node(), step: self.step };
         let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
         crew.run(&|me| {
             for part in share(self.parts.len(), me) {
@@ -417,6 +419,10 @@ impl<W: Law> Stepper for General<W> {
         self.law.is_damped()
     }
 
+    fn copy(&self) -> Box<dyn Stepper> {
+        Box::new(self.clone())
+    }
+
     fn keep(&mut self) {
         for part in &mut self.parts {
             part.kept.copy_from(&mut part.records);
@@ -433,7 +439,7 @@ impl<W: Law> Stepper for General<W> {
         self.tally.restore();
     }
 
-    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         if self.sums.len() < crew.threads() {
             let most = self.parts.iter().map(|part| part.index.len() + 1).max().unwrap_or(0);
             self.sums.resize_with(crew.threads(), || Aligned::zeros(most * SUM));

@@ -8,7 +8,6 @@ use crate::kernel::stepper::Pass;
 use crate::kernel::update::{NodeUpdate, NodeVector, Stage};
 use crate::lanes::{Lanes, MOST, Work, each};
 use crate::law::{Law, RECORD};
-use glam::DVec3;
 use std::ops::Range;
 
 /// The elements of a part, and the update of the nodes of this part only.
@@ -27,8 +26,6 @@ pub(super) struct OnePart<'a, W> {
 pub(super) struct OfNodes {
     /// [`Law::of_node`].
     pub(super) of_node: [f64; 2],
-    /// Acceleration of gravity (m/s²).
-    pub(super) gravity: DVec3,
     /// ΔT (s).
     pub(super) step: f64,
 }
@@ -56,7 +53,8 @@ impl<W: Law> Work for OnePart<'_, W> {
             unsafe {
                 let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
-                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), [x, y, z], accelerations);
+                let sum = own.update.pushed([x, y, z], |lane| part.index[first + lane] as usize);
+                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), sum, accelerations);
                 lost = first_of(lost, lanes, self.around.held, |lane| part.index[first + lane]);
             }
         }
@@ -97,8 +95,8 @@ struct Own<'a, L> {
 
 impl<'a, L: Lanes> Own<'a, L> {
     #[inline(always)]
-    fn new(OfNodes { of_node, gravity, step }: OfNodes, stage: Stage, number: u64, around: Around<'a>) -> Self {
-        Self { update: NodeUpdate::new(stage, step, gravity, number, around), stage, of_node }
+    fn new(OfNodes { of_node, step }: OfNodes, stage: Stage, number: u64, around: Around<'a>) -> Self {
+        Self { update: NodeUpdate::new(stage, step, number, around), stage, of_node }
     }
 
     /// Moves a vector of nodes by the forces of their elements, to which [`Law::of_node`] is added.
@@ -181,7 +179,8 @@ impl Work for SharedNodes<'_> {
                 }
                 let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
                 let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
-                let lanes = own.advance(|lane| rows[lane], [x, y, z], accelerations);
+                let sum = own.update.pushed([x, y, z], |lane| shared.index[first + lane] as usize);
+                let lanes = own.advance(|lane| rows[lane], sum, accelerations);
                 lost = first_of(lost, lanes, around.held, |lane| shared.index[first + lane]);
                 for (lane, row) in rows.iter().enumerate().take(L::WIDTH) {
                     for place in places(lane).iter().skip(1) {

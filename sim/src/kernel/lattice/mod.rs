@@ -52,8 +52,6 @@ pub(crate) struct Parameters {
     pub(crate) damped: u8,
     /// How rotations are computed.
     pub(crate) rotation: Rotation,
-    /// Acceleration of gravity (m/s²).
-    pub(crate) gravity: DVec3,
     /// ΔT (s).
     pub(crate) step: f64,
 }
@@ -168,6 +166,7 @@ const MEAN: usize = 9;
 const TURN: usize = 12;
 
 /// The steps of a lattice of equal boxes.
+#[derive(Clone)]
 pub(crate) struct LatticeStepper {
     set: Set,
     grid: Grid,
@@ -189,6 +188,7 @@ pub(crate) struct LatticeStepper {
 }
 
 /// Data that all planes share.
+#[derive(Clone)]
 struct Pattern {
     /// 1 for a box, 0 for the end of a row.
     live: Aligned,
@@ -243,6 +243,13 @@ struct Signal {
     pulled: AtomicU64,
     /// Passes in which the nodes that it shares with the thread below have been moved.
     shared: AtomicU64,
+}
+
+/// Between runs there is no progress.
+impl Clone for Signal {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl LatticeStepper {
@@ -330,6 +337,10 @@ impl Stepper for LatticeStepper {
         self.parameters.damped != damped::NONE
     }
 
+    fn copy(&self) -> Box<dyn Stepper> {
+        Box::new(self.clone())
+    }
+
     fn keep(&mut self) {
         let [nodes, turns] = &mut self.kept;
         nodes.copy_from(&mut self.nodes);
@@ -344,7 +355,7 @@ impl Stepper for LatticeStepper {
         self.tally.restore();
     }
 
-    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         sweep::run(self, passes, some, around, crew)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::contact::{Bound, Obstacle, Shape};
-use crate::element::Solids;
 use crate::kernel::Conditions;
 use crate::kernel::stepper::{PartStepper, Rollback};
 use crate::kernel::tests::{FREE, PEFRL, Random, rotations, shape_based, stepped_by_reference};
@@ -11,7 +10,7 @@ use crate::material::Material;
 use crate::model::shape_based::{DampingReading, ShapeBased};
 use crate::state::Runaway;
 use crate::state::State;
-use crate::system::Surroundings;
+use crate::surroundings::Surroundings;
 use glam::DQuat;
 use std::sync::Arc;
 
@@ -32,7 +31,7 @@ fn lattice(cells: [usize; 3], sides: DVec3) -> Arc<Body> {
         let corner = |bits: usize| low + (bits & 1) + grid.row() * (bits >> 1 & 1) + layer * (bits >> 2);
         elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|bits| corner(bits) as u32));
     }
-    Arc::new(Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None))
+    Arc::new(Body::builder(rest).elements(elements).masses(mass).build().expect("a body"))
 }
 
 /// Rotated, stretched, randomly displaced and moving, close above the floor.
@@ -56,7 +55,7 @@ fn start(body: &Body, shake: f64) -> State {
 fn parameters(damping: f64, rotation: Rotation) -> Parameters {
     let damped = if damping > 0.0 { damped::RELATIVE } else { damped::NONE };
     let (stiffness, bending, volume) = (900.0, 1.0, 0.0);
-    Parameters { stiffness, bending, volume, damping, damped, rotation, gravity: GRAVITY, step: STEP }
+    Parameters { stiffness, bending, volume, damping, damped, rotation, step: STEP }
 }
 
 /// Poisson's ratio, where there is an energy of the volume.
@@ -123,9 +122,9 @@ fn run_by(
     rollback.load(0, &state.position, &state.velocity, &memory);
     let floor = floor();
     let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
-    let around = Around { bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
+    let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
     for call in 1..=calls {
-        rollback.advance(call * steps, &around, &mut Crew::new(threads)).expect("no runaway");
+        rollback.advance(call * steps, &around, &Crew::new(threads)).expect("no runaway");
     }
     let mut state = state.clone();
     rollback.store(&mut state.position, &mut state.velocity, &mut memory);
@@ -140,7 +139,7 @@ fn rollback(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Ro
 
 fn reference(scheme: Scheme, body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
     let model = model(body, parameters);
-    let around = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], grips: vec![] };
+    let around = Surroundings { gravity: GRAVITY, obstacles: vec![floor()], ..Surroundings::default() };
     let mut world = stepped_by_reference(body, state, &model, scheme, around, STEP);
     world.advance(steps);
     assert_eq!(world.steps(), steps);
@@ -209,9 +208,9 @@ fn rigid_motion_is_left_alone() {
     let velocity = position.iter().map(|&at| spin.cross(at - position[0]) + DVec3::X).collect();
     let state = State::new(position, velocity);
     for parameters in beyond().into_iter().filter(|parameters| parameters.damped == damped::DEFORMING) {
-        let parameters = Parameters { gravity: DVec3::ZERO, stiffness: 0.0, damping: 100.0, ..parameters };
+        let parameters = Parameters { stiffness: 0.0, damping: 100.0, ..parameters };
         let (found, _) = run(&body, &state, parameters, Set::best(), 1, 1);
-        let change = |(after, before): (&DVec3, &DVec3)| (*after - *before).length();
+        let change = |(after, before): (&DVec3, &DVec3)| (*after - *before - GRAVITY * STEP).length();
         let most = found.velocity.iter().zip(&state.velocity).map(change).fold(0.0, f64::max);
         // Of the damping of velocities of some m/s, 0.1 a step: the round-off of positions of 900 m.
         assert!(most < 1e-12, "{most:e}");
@@ -224,7 +223,7 @@ fn steps_are_those_of_the_kernel_for_any_elements() {
     let state = start(&body, 0.05);
     for parameters in beyond() {
         let scheme = Scheme::SemiImplicitEuler;
-        let conditions = Conditions { scheme, gravity: GRAVITY, step: STEP, set: Set::best() };
+        let conditions = Conditions { scheme, step: STEP, set: Set::best() };
         let stepper = model(&body, parameters).by_law(&body, &conditions, None).stepper;
         let mut memory = rotations(&body, &state);
         let parts = vec![PartStepper { stepper, nodes: 0..body.len(), memory: 0..memory.len() }];
@@ -232,8 +231,8 @@ fn steps_are_those_of_the_kernel_for_any_elements() {
         general.load(0, &state.position, &state.velocity, &memory);
         let floor = floor();
         let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
-        let around = Around { bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
-        general.advance(200, &around, &mut Crew::new(1)).expect("no runaway");
+        let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
+        general.advance(200, &around, &Crew::new(1)).expect("no runaway");
         let mut of_general = state.clone();
         general.store(&mut of_general.position, &mut of_general.velocity, &mut memory);
         let (found, _) = run(&body, &state, parameters, Set::best(), 1, 200);
@@ -292,18 +291,18 @@ fn before_a_runaway_the_state_is_that_of_the_step_before() {
             (rollback.steps(), state, memory)
         };
         let mut one = make();
-        let runaway = one.advance(1000, &around, &mut Crew::new(1)).expect_err("unstable");
+        let runaway = one.advance(1000, &around, &Crew::new(1)).expect_err("unstable");
         let taken = one.steps();
         assert!((1..1000).contains(&taken), "{taken}");
         let mut up_to_there = make();
-        assert_eq!(up_to_there.advance(taken, &around, &mut Crew::new(1)), Ok(()));
+        assert_eq!(up_to_there.advance(taken, &around, &Crew::new(1)), Ok(()));
         assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
-        assert_eq!(up_to_there.advance(taken + 1, &around, &mut Crew::new(1)), Err(runaway));
+        assert_eq!(up_to_there.advance(taken + 1, &around, &Crew::new(1)), Err(runaway));
         assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
         // In calls of one step, and with several threads.
         for (threads, steps) in [(1, 1), (2, 1000), (3, 1000), (3, 7)] {
-            let (mut other, mut crew) = (make(), Crew::new(threads));
-            let lost = (1..).find_map(|call| other.advance(call * steps, &around, &mut crew).err());
+            let (mut other, crew) = (make(), Crew::new(threads));
+            let lost = (1..).find_map(|call| other.advance(call * steps, &around, &crew).err());
             assert_eq!(lost, Some(runaway));
             assert!(read(&mut other) == read(&mut one), "{scheme:?} {threads} {steps}");
         }
@@ -319,7 +318,7 @@ fn what_is_no_number_is_lost_at_once() {
     let mut position = state.position.clone();
     position[17].y = f64::NAN;
     rollback.load(0, &position, &state.velocity, &rotations(&body, &state));
-    assert!(matches!(rollback.advance(3, &FREE, &mut Crew::new(1)), Err(Runaway { .. })) && rollback.steps() == 0);
+    assert!(matches!(rollback.advance(3, &FREE, &Crew::new(1)), Err(Runaway { .. })) && rollback.steps() == 0);
     assert!(rollback.node(17).0.y.is_nan() && rollback.node(0) == (state.position[0], state.velocity[0]));
 }
 

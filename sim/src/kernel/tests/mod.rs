@@ -24,7 +24,7 @@ use crate::motion::{Ease, Key, Motion, Offset};
 use crate::rotation::{best, davenport1968, moment, planar};
 use crate::state::Runaway;
 use crate::state::State;
-use crate::system::Surroundings;
+use crate::surroundings::Surroundings;
 use crate::topology::Springs;
 use crate::world::{Kernel, Stepping, World};
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -76,7 +76,15 @@ fn block(cells: [u32; 3], irregular: f64, random: &mut Random) -> (Dimension, Ve
 /// A body with unequal masses.
 fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &mut Random) -> Arc<Body> {
     let mass = rest.iter().map(|_| 1.0 + 0.5 * random.next()).collect();
-    Arc::new(Body::new(dimension, rest, mass, elements, Solids::Convex, None))
+    Arc::new(
+        Body::builder(rest)
+            .dimension(dimension)
+            .elements(elements)
+            .solids(Solids::Convex)
+            .masses(mass)
+            .build()
+            .expect("a body"),
+    )
 }
 
 /// A block of whole cells.
@@ -149,8 +157,11 @@ pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
     memory
 }
 
-/// No obstacles and no speed limit.
+/// Gravity alone, and no speed limit.
 pub(super) const FREE: Around<'_> = Around {
+    gravity: GRAVITY,
+    forces: &[],
+    push: None,
     bounds: &[],
     row: &|_| 0..0,
     resolve: &|_, _, _, _| {},
@@ -162,7 +173,7 @@ pub(super) const FREE: Around<'_> = Around {
 };
 
 fn conditions(scheme: Scheme, set: Set) -> Conditions {
-    Conditions { scheme, gravity: GRAVITY, step: STEP, set }
+    Conditions { scheme, step: STEP, set }
 }
 
 /// A state with the rotations.
@@ -180,7 +191,7 @@ impl Moving {
     }
 
     fn advance(&mut self, steps: u64, around: Around<'_>) -> Result<(), Runaway> {
-        self.0.advance(self.0.steps() + steps, &around, &mut self.1)
+        self.0.advance(self.0.steps() + steps, &around, &self.1)
     }
 
     fn stored(&mut self, like: &Whole) -> Whole {
@@ -235,7 +246,7 @@ fn reference(
     scheme: Scheme,
     obstacles: Vec<Obstacle>,
 ) -> World {
-    let around = Surroundings { gravity: GRAVITY, obstacles, grips: Vec::new() };
+    let around = Surroundings { gravity: GRAVITY, obstacles, ..Surroundings::default() };
     stepped_by_reference(body, start, model, scheme, around, STEP)
 }
 

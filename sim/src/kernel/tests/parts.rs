@@ -65,13 +65,13 @@ fn meeting(kernel: Kernel, integrator: Integrator, damping: f64, stage: Option<P
     };
     let held = bodies[0].len() as u32 + 3;
     let grips = vec![Grip { nodes: vec![held], from: 0.0, until: 0.1, motion: Motion::Still }];
-    let around = Surroundings { gravity: GRAVITY, obstacles: vec![floor], grips };
+    let around = Surroundings { gravity: GRAVITY, obstacles: vec![floor], grips, ..Surroundings::default() };
     let stepping = Stepping { kernel, ..Stepping::new(integrator, STEP) };
     let [first, second] = [0, 1].map(|at| (Arc::clone(&bodies[at]), &*models[at]));
     let mut world = World::of_parts(&[first, second], all, around, stepping);
     world.set_crew(Crew::new(threads));
     if let Some(stage) = stage {
-        world.add_contact(Box::new(stage));
+        world.add_contact(Arc::new(stage));
     }
     world
 }

@@ -154,7 +154,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
                 for (grips, obstacles) in [(&grips, vec![]), (&some_time, vec![paddle.clone()])] {
                     let world = |kernel, obstacles: &[Obstacle]| {
                         let (obstacles, grips) = (obstacles.to_vec(), grips.clone());
-                        let around = Surroundings { gravity: GRAVITY, obstacles, grips };
+                        let around = Surroundings { gravity: GRAVITY, obstacles, grips, ..Surroundings::default() };
                         let stepping = Stepping { kernel, ..Stepping::new(integrator, STEP) };
                         World::new(body, start(body, 8), model.as_ref(), around, stepping)
                     };

@@ -22,7 +22,7 @@ mod nearest;
 pub(in crate::model) use map::{Map, cofactors, dot};
 pub(in crate::model) use nearest::with_nearest;
 
-use super::{ByLaw, ElasticModel, ForceModel, Lanes, Misfit, Vectorised};
+use super::{ByLaw, ElasticModel, ForceModel, Lanes, Misfit, Properties, Setting, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::kernel::{Compiled, Conditions};
@@ -31,14 +31,13 @@ use crate::volume::volumes_at_rest;
 use elements::Elements;
 use glam::{DMat3, DVec3};
 use modes::{GAUSS, bits};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// The parameters of a model of finite elements in a scene file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The parameters of a model of a material in a scene file: of finite elements, and of `metric`.
+#[cfg(feature = "scene")]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
 pub struct Parameters {
@@ -61,36 +60,66 @@ pub struct Parameters {
     pub damping_ratio: Option<f64>,
 }
 
-/// Defines the parameters of the finite elements of a material law.
-macro_rules! parameters {
+#[cfg(feature = "scene")]
+impl Parameters {
+    /// The model that `make` makes for a body from a material and a damping constant (N s/m).
+    pub(in crate::model) fn model<M: ElasticModel + 'static>(
+        &self,
+        body: &Body,
+        make: impl Fn(Material, f64) -> Result<M, Misfit>,
+    ) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        let material = Material { young: self.young, poisson: self.poisson.unwrap_or(0.0) };
+        let undamped = make(material, 0.0)?;
+        let damping = super::damping(self.damping, self.damping_ratio, undamped.properties(body).stiffness, body)?;
+        Ok(Arc::new(if damping == 0.0 { undamped } else { make(material, damping)? }))
+    }
+}
+
+/// Defines the model of a material law, and its parameters in a scene file.
+macro_rules! of_law {
     ($law:ident) => {
+        /// The model of a material on a body, with the damping constant of the stiffest element (N s/m).
+        ///
+        /// # Errors
+        /// A material that is none, and elements that the model does not take: of other kinds, without a volume, or that are turned
+        /// inside out at rest at one of their points.
+        pub fn model(
+            body: &crate::body::Body,
+            material: crate::material::Material,
+            damping: f64,
+        ) -> Result<std::sync::Arc<dyn super::ElasticModel>, super::Misfit> {
+            Ok(std::sync::Arc::new(super::continuum::FiniteElements::<$law>::new(body, material, damping)?))
+        }
+
+        super::continuum::of_material!(|body, material, damping| {
+            super::continuum::FiniteElements::<$law>::new(body, material, damping)
+        });
+    };
+}
+pub(in crate::model) use of_law;
+
+/// Defines the parameters in a scene file of a model of a material.
+macro_rules! of_material {
+    (|$body:ident, $material:ident, $damping:ident| $make:expr) => {
         /// The parameters of the model in a scene file.
+        #[cfg(feature = "scene")]
         #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(transparent)]
         pub struct Parameters(pub super::continuum::Parameters);
 
-        impl Parameters {
-            /// The model for a body.
-            ///
-            /// # Errors
-            /// Parameters that contradict each other or do not fit the body.
-            pub fn model(&self, body: &crate::body::Body) -> Result<Box<dyn super::ElasticModel>, super::Misfit> {
-                Ok(Box::new(super::continuum::FiniteElements::<$law>::new(&self.0, body)?))
-            }
-        }
-
+        #[cfg(feature = "scene")]
         impl super::TypedModel for Parameters {
             fn resolve(
                 &self,
-                body: &crate::body::Body,
+                $body: &crate::body::Body,
                 _: Option<&[[u32; 2]]>,
             ) -> Result<std::sync::Arc<dyn super::ElasticModel>, super::Misfit> {
-                self.model(body).map(std::sync::Arc::from)
+                self.0.model($body, |$material, $damping| $make)
             }
         }
     };
 }
-pub(in crate::model) use parameters;
+pub(in crate::model) use of_material;
 
 /// The law of a material, in the plane (`D` = 2) and in space (`D` = 3).
 pub(in crate::model) trait Stress: Clone + Copy + Debug + Send + Sync + 'static {
@@ -116,12 +145,11 @@ pub(in crate::model) struct FiniteElements<S> {
 }
 
 impl<S: Stress> FiniteElements<S> {
-    /// The model for a body.
+    /// The model of a material on a body, with the damping constant of the stiffest element (N s/m).
     ///
     /// # Errors
-    /// Parameters that contradict each other, and elements that it does not take: of other kinds, without a volume, or that are turned inside
-    /// out at rest at one of their points.
-    pub(in crate::model) fn new(parameters: &Parameters, body: &Body) -> Result<Self, Misfit> {
+    /// As `of_law` says of `model`.
+    pub(in crate::model) fn new(body: &Body, material: Material, damping: f64) -> Result<Self, Misfit> {
         let kinds = body.elements.iter().zip(&body.kinds).enumerate();
         for (at, (nodes, &kind)) in kinds {
             let (is_taken, taken) = match body.dimension {
@@ -147,7 +175,7 @@ impl<S: Stress> FiniteElements<S> {
             );
             return Err(Misfit { key: "kind", message });
         }
-        let material = super::material(Some(parameters.young), parameters.poisson, body)?;
+        super::check(material, body)?;
         if let Some(element) = body.elements.iter().position(|nodes| is_folded(body, nodes)) {
             let message = format!(
                 "element {element} is folded: at rest it is turned inside out near one of its nodes; move its nodes, or divide it"
@@ -155,7 +183,6 @@ impl<S: Stress> FiniteElements<S> {
             return Err(Misfit { key: "kind", message });
         }
         let stiffness = material.stiffness(body).into_iter().fold(0.0, f64::max);
-        let damping = super::damping(parameters.damping, parameters.damping_ratio, stiffness, body)?;
         Ok(Self { material, stiffness, damping, of: PhantomData })
     }
 
@@ -187,27 +214,9 @@ macro_rules! by_law {
 }
 
 impl<S: Stress> ElasticModel for FiniteElements<S> {
-    fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        let material = Material { young: self.material.young * stiffness, ..self.material };
-        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
-        Some(Arc::new(Self { material, stiffness, damping, of: PhantomData }))
-    }
-
-    fn typed_material(&self) -> Option<Material> {
-        Some(self.material)
-    }
-
-    fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    fn unusual_choices(&self, _: &Body) -> String {
-        let damping = if self.damping > 0.0 { " of deformation" } else { "" };
-        damping.to_owned()
+    fn properties(&self, body: &Body) -> Properties {
+        let undamped = Properties::new(S::NAME, self.stiffness).of_material(Some(self.material), body.dimension);
+        undamped.damped(self.damping).fixed("damping_of", Setting::Choice("deformation"))
     }
 
     fn vectorised(&self) -> Option<&dyn Vectorised> {

@@ -30,6 +30,7 @@ fn moment(rest: &[DVec3]) -> DMat3 {
 }
 
 /// Whether the nodes of an element with these `R0` (m) are those of a simplex, so that a linear map fits all their displacements.
+#[cfg(feature = "scene")]
 pub(super) fn is_simplex(rest: &[DVec3]) -> bool {
     pseudo_inverse(moment(rest)).1 + 1 == rest.len()
 }

@@ -21,8 +21,9 @@ mod affine;
 mod in_lanes;
 mod projection;
 
-use super::{ElasticModel, ForceModel, Late, Misfit, Ratio, Report, Scratch, Share, TypedModel, Vectorised, blocks};
+use super::{ElasticModel, ForceModel, Late, Properties, Report, Scratch, Setting, Share, Vectorised, blocks};
 use crate::body::Body;
+use crate::crew::Crew;
 use crate::element::Dimension;
 use crate::fill;
 use crate::kernel::lattice::{self, LatticeStepper};
@@ -34,13 +35,12 @@ use crate::rotation::{self, davenport1968, linear_update, planar};
 use crate::state::Nodes;
 use affine::{AtRest, Stretch};
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The parameters of the model in a scene file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg(feature = "scene")]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
 #[schemars(extend("oneOf" = [{ "required": ["stiffness"] }, { "required": ["young"] }]))]
@@ -62,7 +62,7 @@ pub struct Parameters {
     /// A factor of the forces that resist bending, a number or a fraction such as `"1/3"`. With `"1/3"`, lattices of cubes bend like
     /// the material at any number of cells; the paper's model is stiffer. Default: 1, the paper's model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bending: Option<Ratio>,
+    pub bending: Option<super::Ratio>,
     /// Damping constant of each element, `D_e` of Eq. (4) (N s/m). Where elements differ in stiffness, as with `young`, it is that of the stiffest
     /// one, and others have it in proportion. Default: 0. Not together with `damping_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -91,14 +91,25 @@ pub struct Parameters {
 }
 
 /// The velocity that the damping of Eq. (4) acts on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum DampingReading {
     /// As printed: the velocity of a node relative to the element's mean. It also damps rigid rotation. The default.
     #[default]
     RelativeMotion,
     /// This relative velocity minus the best-fitting rigid rotation.
     Deformation,
+}
+
+impl DampingReading {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RelativeMotion => "relative-motion",
+            Self::Deformation => "deformation",
+        }
+    }
 }
 
 /// The model with its parameters in SI units, checked.
@@ -122,6 +133,7 @@ pub struct ShapeBased {
     pub breaks_at: Option<f64>,
 }
 
+#[cfg(feature = "scene")]
 impl Parameters {
     /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
@@ -134,34 +146,35 @@ impl Parameters {
     }
 }
 
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+#[cfg(feature = "scene")]
+impl super::TypedModel for Parameters {
+    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, super::Misfit> {
         if body.dimension == Dimension::Plane {
             let given = [("rotation", self.rotation.is_some()), ("passes", self.passes.is_some())];
             if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
                 let message = format!(
                     "`{key}` is about Eq. (15), but the body is in the plane, where Eq. (9) is exact; take it out"
                 );
-                return Err(Misfit { key, message });
+                return Err(super::Misfit { key, message });
             }
         }
         if let Some(rotation) = self.rotation.filter(|rotation| self.passes.is_some() && !rotation.has_passes()) {
-            let rotation = super::typed(&rotation);
+            let rotation = rotation.name();
             let message = format!(
                 "`passes` is the number of steps of an iteration, which `rotation = \"{rotation}\"` does without; take it out"
             );
-            return Err(Misfit { key: "passes", message });
+            return Err(super::Misfit { key: "passes", message });
         }
         let rotation = self.rotation.unwrap_or(match self.passes {
             Some(_) => RotationReading::Arctangent,
             None => RotationReading::default(),
         });
         if self.breaks_at.is_some() && rotation != RotationReading::Robust {
-            let rotation = super::typed(&rotation);
+            let rotation = rotation.name();
             let message = format!(
                 "`breaks_at` compares strains, which need exact rotations, but the rotation is \"{rotation}\"; take \"robust\" without `passes`"
             );
-            return Err(Misfit { key: "breaks_at", message });
+            return Err(super::Misfit { key: "breaks_at", message });
         }
         let (stiffness, material) = super::stiffness(self.stiffness, self.young, self.poisson, body)?;
         Ok(Arc::new(ShapeBased {
@@ -175,59 +188,11 @@ impl TypedModel for Parameters {
             breaks_at: super::breaks_at(self.breaks_at)?,
         }))
     }
-}
 
-impl ElasticModel for ShapeBased {
-    fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        Some(Arc::new(self.times(stiffness, damping)))
-    }
-
-    fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    fn unusual_choices(&self, body: &Body) -> String {
-        let damping = match self.damping_of {
-            DampingReading::Deformation if self.damping > 0.0 => " of deformation",
-            _ => "",
-        };
-        let rotation = match self.rotation {
-            // In the plane there is only one method.
-            _ if body.dimension == Dimension::Plane => "",
-            RotationReading::Arctangent => "",
-            RotationReading::VectorLength => ", θ = |w|",
-            RotationReading::LinearUpdate => ", Eq. (16)",
-            RotationReading::Robust => ", exact rotations",
-        };
-        format!("{damping}{}{rotation}", self.beyond_the_paper())
-    }
-
-    fn choices(&self, body: &Body) -> String {
-        let mut text = match (body.dimension, self.rotation) {
-            (Dimension::Plane, _) => ", rotations by Eq. (9)".to_owned(),
-            (Dimension::Space, rotation) if rotation.has_passes() => {
-                let plural = if self.passes == 1 { "" } else { "es" };
-                format!(", rotation {} with {} pass{plural}", super::typed(&rotation), self.passes)
-            }
-            (Dimension::Space, rotation) => format!(", rotation {} (exact)", super::typed(&rotation)),
-        };
-        if self.damping > 0.0 {
-            text += &format!(", damping of {}", super::typed(&self.damping_of));
-        }
-        text + &self.beyond_the_paper()
-    }
-
-    fn typed_material(&self) -> Option<Material> {
-        self.material
-    }
-
-    fn without_effect(&self, body: &Body) -> Option<Misfit> {
+    fn without_effect(&self, body: &Body) -> Option<super::Misfit> {
         let bends = |nodes: &[u32]| !affine::is_simplex(&at_rest(nodes, body).collect::<Vec<_>>());
-        (self.bending != 1.0 && !body.elements.iter().any(bends)).then(|| {
+        let is_given = self.bending.is_some_and(|bending| bending.0 != 1.0);
+        (is_given && !body.elements.iter().any(bends)).then(|| {
             let [simplices, others] = match body.dimension {
                 Dimension::Plane => ["segments and triangles", "quadrilaterals"],
                 Dimension::Space => ["segments, triangles and tetrahedra", "hexahedra"],
@@ -236,12 +201,29 @@ impl ElasticModel for ShapeBased {
                 "`bending` has no effect on this body: {simplices} do not bend, because a linear map fits any of their displacements; take it \
                  out, or take elements of more nodes, such as {others}"
             );
-            Misfit { key: "bending", message }
+            super::Misfit { key: "bending", message }
         })
     }
+}
 
-    fn brakes_rotation(&self) -> bool {
-        self.damping > 0.0 && self.damping_of == DampingReading::RelativeMotion
+impl ElasticModel for ShapeBased {
+    /// In the plane the rotation is `planar`, by Eq. (9), whatever `rotation` says.
+    fn properties(&self, body: &Body) -> Properties {
+        let mut own = Properties::new("shape-based", self.stiffness).of_material(self.material, body.dimension);
+        own = own.damped(self.damping).with("damping_of", Setting::Choice(self.damping_of.name()));
+        own = match body.dimension {
+            Dimension::Plane => own.fixed("rotation", Setting::Choice("planar")),
+            Dimension::Space => own.with("rotation", Setting::Choice(self.rotation.name())),
+        };
+        if body.dimension == Dimension::Space && self.rotation.has_passes() {
+            own = own.with("passes", Setting::Count(self.passes));
+        }
+        own = own.with("bending", Setting::Number(self.bending, ""));
+        if let Some(strain) = self.breaks_at {
+            own = own.with("breaks_at", Setting::Number(strain, ""));
+        }
+        let (breakable, counts_fallbacks) = (self.breakable(body), self.counts_fallbacks(body));
+        Properties { breakable, counts_fallbacks, ..own }
     }
 
     fn material(&self, body: &Body) -> Option<Material> {
@@ -279,26 +261,12 @@ impl ElasticModel for ShapeBased {
         is_vectorised.then_some(self)
     }
 
-    fn with_rotation(&self, body: &Body, rotation: RotationReading) -> Option<Arc<dyn ElasticModel>> {
-        // In the plane all methods are Eq. (9).
-        (body.dimension == Dimension::Space)
-            .then(|| -> Arc<dyn ElasticModel> { Arc::new(Self { rotation, ..self.clone() }) })
-    }
-
-    fn counts_global(&self, body: &Body) -> bool {
-        self.solver(body.dimension).counts() && self.breaks_at.is_none()
-    }
-
-    fn breaks(&self, body: &Body) -> Option<usize> {
-        self.breaks_at.map(|_| self.solver(body.dimension).width() + 1)
-    }
-
     /// The rotations that are optimal for the initial positions, which need not be the identity. In space they are followed by the
     /// number of rotations that the global solver has computed since then. Those of elements that break are each followed by whether it is broken.
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         let solver = self.solver(body.dimension);
-        let width = self.breaks(body).unwrap_or(solver.width());
-        let mut memory = vec![0.0; width * body.elements.len() + usize::from(self.counts_global(body))];
+        let width = self.breakable(body).unwrap_or(solver.width());
+        let mut memory = vec![0.0; width * body.elements.len() + usize::from(self.counts_fallbacks(body))];
         let mut rest = Vec::new();
         for (nodes, memory) in body.elements.iter().zip(memory.chunks_exact_mut(width)) {
             let memory = &mut memory[..solver.width()];
@@ -326,10 +294,9 @@ impl Vectorised for ShapeBased {
         if let Some(limit) = self.breaks_at {
             return in_lanes::compile_breaking(self, limit, body, conditions);
         }
-        let (&Self { stiffness, bending, damping, .. }, &Conditions { scheme, gravity, step, set }) =
-            (self, conditions);
+        let (&Self { stiffness, bending, damping, .. }, &Conditions { scheme, step, set }) = (self, conditions);
         let (volume, damped, rotation) = (self.volume(body.dimension), self.damped(), self.rotation_in_lanes());
-        let parameters = lattice::Parameters { stiffness, bending, volume, damping, damped, rotation, gravity, step };
+        let parameters = lattice::Parameters { stiffness, bending, volume, damping, damped, rotation, step };
         let is_uniform = self.relative_stiffness(body).is_none();
         let lattice = is_uniform.then(|| LatticeStepper::new(body, parameters, scheme, set)).flatten();
         self.by_law(body, conditions, lattice.map(|lattice| -> Box<dyn Stepper> { Box::new(lattice) }))
@@ -429,23 +396,14 @@ impl ShapeBased {
         fill::product(body.fill.as_deref(), relative)
     }
 
-    /// This model with its stiffness and its damping multiplied.
-    pub(in crate::model) fn times(&self, stiffness: f64, damping: f64) -> Self {
-        let material = self.material.map(|of| Material { young: of.young * stiffness, ..of });
-        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
-        Self { stiffness, material, damping, ..self.clone() }
+    /// See [`Properties::breakable`].
+    fn breakable(&self, body: &Body) -> Option<usize> {
+        self.breaks_at.map(|_| self.solver(body.dimension).width() + 1)
     }
 
-    /// The options that the paper's model does not have.
-    fn beyond_the_paper(&self) -> String {
-        let mut text = String::new();
-        if self.bending != 1.0 {
-            text += &format!(", β = {}", Ratio(self.bending));
-        }
-        if let Some(strain) = self.breaks_at {
-            text += &format!(", breaks at {strain}");
-        }
-        text
+    /// See [`Properties::counts_fallbacks`]: it counts the rotations that the [global solver](davenport1968) has computed.
+    fn counts_fallbacks(&self, body: &Body) -> bool {
+        self.solver(body.dimension).counts() && self.breaks_at.is_none()
     }
 
     fn solver(&self, dimension: Dimension) -> Solver {
@@ -519,7 +477,7 @@ impl Elements {
         let at_rest = |element: usize| AtRest::new(&rest[elements.range(element)], body.dimension);
         let maps = model.fits_maps().then(|| (0..elements.len()).map(at_rest).collect());
         let (solver, parts) = (model.solver(body.dimension), model.relative_stiffness(body));
-        let width = model.breaks(body).unwrap_or(solver.width());
+        let width = model.breakable(body).unwrap_or(solver.width());
         Self { solver, width, model, body: Arc::clone(body), rest, inertia, parts, maps, gather }
     }
 
@@ -612,18 +570,18 @@ impl Elements {
 
 impl ForceModel for Elements {
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
-        let (corners, globals) = (scratch.vectors(self.rest.len()), AtomicU64::new(0));
-        blocks::for_each(&self.body.elements, self.width, next, corners, &|element, next, corners| {
+        let ((crew, corners), globals) = (scratch.parts(self.rest.len()), AtomicU64::new(0));
+        blocks::for_each(crew, &self.body.elements, self.width, next, corners, &|element, next, corners| {
             if self.forces(element, at, self.of(element, memory), next, corners) {
                 globals.fetch_add(1, Ordering::Relaxed);
             }
         });
-        if self.model.counts_global(&self.body)
+        if self.model.counts_fallbacks(&self.body)
             && let (Some(before), Some(after)) = (memory.last(), next.last_mut())
         {
             *after = before + globals.into_inner() as f64;
         }
-        self.gather.add(corners, forces);
+        self.gather.add(crew, corners, forces);
     }
 
     fn is_damped(&self) -> bool {
@@ -638,28 +596,35 @@ impl ForceModel for Elements {
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {
         let mut shares = vec![0.0; self.rest.len()];
         let mut alphas = vec![0.0; self.body.elements.len()];
-        blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
-            let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
-            let (last, mut next) = (self.of(element, memory), [0.0; 9]);
-            let fit = self.fit(element, at.position, last, &mut next[..last.len()]);
-            if self.is_broken(element, at.position, &fit, last) {
-                return;
-            }
-            let Fit { centre, at_rest, rotation, .. } = fit;
-            let stretch = self.stretch(element, at_rest);
-            for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
-                let r = at.position[node as usize] - centre;
-                let squared = match stretch {
-                    None => (r - rotation * rest).length_squared(),
-                    Some(Stretch { map, volume, .. }) => {
-                        let bent = self.model.bending * (r - map * rest).length_squared();
-                        bent + (map * rest - rotation * rest).length_squared() + volume / nodes.len() as f64
-                    }
-                };
-                *share = 0.5 * k * squared;
-            }
-            alpha[0] = self.residual(element, at_rest, rotation);
-        });
+        blocks::for_each(
+            &Crew::default(),
+            &self.body.elements,
+            1,
+            &mut alphas,
+            &mut shares,
+            &|element, alpha, shares| {
+                let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
+                let (last, mut next) = (self.of(element, memory), [0.0; 9]);
+                let fit = self.fit(element, at.position, last, &mut next[..last.len()]);
+                if self.is_broken(element, at.position, &fit, last) {
+                    return;
+                }
+                let Fit { centre, at_rest, rotation, .. } = fit;
+                let stretch = self.stretch(element, at_rest);
+                for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
+                    let r = at.position[node as usize] - centre;
+                    let squared = match stretch {
+                        None => (r - rotation * rest).length_squared(),
+                        Some(Stretch { map, volume, .. }) => {
+                            let bent = self.model.bending * (r - map * rest).length_squared();
+                            bent + (map * rest - rotation * rest).length_squared() + volume / nodes.len() as f64
+                        }
+                    };
+                    *share = 0.5 * k * squared;
+                }
+                alpha[0] = self.residual(element, at_rest, rotation);
+            },
+        );
         for (element, nodes) in self.body.elements.iter().enumerate() {
             share(element, nodes, &shares[self.body.elements.range(element)]);
         }

@@ -12,7 +12,6 @@ use crate::kernel::update::NodeUpdate;
 use crate::kernel::{Around, Lost, Rotation};
 use crate::lanes::{Lanes, MOST, Work};
 use crate::tally::Tally;
-use glam::DVec3;
 use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,14 +24,14 @@ pub(super) fn run(
     passes: Passes,
     some: Range<u64>,
     around: &Around<'_>,
-    crew: &mut Crew,
+    crew: &Crew,
 ) -> Option<Lost> {
     let LatticeStepper { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, tally, kept: _ } =
         lattice;
     if some.is_empty() {
         return None;
     }
-    let Parameters { stiffness, bending, volume, damping, damped, rotation, gravity, step } = *parameters;
+    let Parameters { stiffness, bending, volume, damping, damped, rotation, step } = *parameters;
     let side = grid.sides.element_sum() / 3.0;
     let ratio = (grid.sides / side).to_array();
     let members = crew.threads().min(grid.cells[2]);
@@ -69,7 +68,6 @@ pub(super) fn run(
         // The columns of `A` at rest have length 2 side²; the factor side / 2 is left out.
         scale: 1.0 / (4.0 * side),
         half: 0.5 * side * stiffness,
-        gravity,
         step,
         parts: *parts,
         around,
@@ -172,7 +170,6 @@ struct Sweep<'a> {
     scale: f64,
     /// Half the mean side, times the stiffness (N).
     half: f64,
-    gravity: DVec3,
     step: f64,
     parts: usize,
     around: &'a Around<'a>,
@@ -218,7 +215,7 @@ impl Sweep<'_> {
         let [first, end] = self.some;
         for pass in 0..end - first {
             let Pass { stage, number, commit, .. } = self.passes.get(first + pass);
-            let update = NodeUpdate::<L>::new(stage, self.step, self.gravity, number, *self.around);
+            let update = NodeUpdate::<L>::new(stage, self.step, number, *self.around);
             // SAFETY: the arrays belong to a lattice, all to this grid, and are accessed by no one but the other
             // threads.
             let bad = unsafe {

@@ -550,6 +550,7 @@ impl Sweep<'_> {
                         total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
                     }
                 });
+                let total = update.pushed(total, |lane| plane * self.grid.layer() + at + lane);
                 let lost = update.go(&mut nodes, total, inverse_mass(to));
                 if lost != 0
                     && let Some(first) = self.first_lost(plane * self.grid.layer() + at, lost)

@@ -5,9 +5,8 @@ use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::layout::tree::Place;
 use crate::picture::layout::{Scale, whole};
+use crate::runner::RunFrame;
 use crate::runner::moments;
-use crate::scene::Run;
-use crate::sim::RunFrame;
 use glam::{DVec2, DVec3};
 
 /// The contents of one cell.
@@ -34,9 +33,12 @@ impl<'a> Cell<'a> {
         let scene = composer.scene;
         let snapshot = runs[run].snapshot.clone();
         let ways = |run: usize| {
-            let Run { bodies, models, .. } = &scene.runs[run];
-            let stiffness = |node: usize| models[bodies.body_of_node(node)].stiffness();
-            let forces = runs[run].on_nodes.iter().enumerate();
+            let on_nodes = &runs[run].on_nodes;
+            let run = &scene.runs[run];
+            let of_bodies: Vec<_> =
+                run.models_and_bodies().map(|(model, body)| model.properties(body).stiffness).collect();
+            let stiffness = |node: usize| of_bodies[run.bodies.body_of_node(node)];
+            let forces = on_nodes.iter().enumerate();
             forces.map(|(node, &force)| force / stiffness(node)).collect::<Vec<_>>()
         };
         let middle = snapshot.position.iter().sum::<DVec3>() / snapshot.position.len().max(1) as f64;

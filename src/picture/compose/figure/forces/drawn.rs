@@ -74,7 +74,7 @@ impl Drawn<'_> {
         let (skin, bare, body) = (self.draft.bodies.cage(), &self.draft.bodies.bare, self.draft.body);
         let mut seen = skin.visible(position, &self.draft.lens);
         for node in (0..position.len()).filter(|&node| !skin.holds(node as u32)) {
-            let is_bare = || bare.iter().any(|&element| body.elements[element].contains(&(node as u32)));
+            let is_bare = || bare.iter().any(|&element| body.elements()[element].contains(&(node as u32)));
             seen[node] = if self.draft.flat || is_bare() { 1.0 } else { 0.0 };
         }
         seen
@@ -88,7 +88,7 @@ impl Drawn<'_> {
         let [left, top, right, bottom] = sides(self.room);
         let inset = FREE * unit;
         let mut labels = Labels::new([left + inset, top + inset, right - inset, bottom - inset], unit);
-        let faces = self.draft.body.faces.nodes.iter();
+        let faces = self.draft.body.faces().nodes.iter();
         labels.surfaces = faces.map(|face| face.iter().map(|&node| nodes[node as usize]).collect()).collect();
         let seen_ghost = self.seen(&cell.ghost);
         for edge in Edges::new(self.draft.body).all {

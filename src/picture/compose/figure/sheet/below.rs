@@ -9,8 +9,9 @@ use crate::picture::tally::{self, Tally, hollow, struck};
 use crate::picture::text::Weight;
 use crate::picture::{Colour, chart, number};
 use crate::reading::captions::elements;
+use crate::runner::RunFrame;
 use crate::scene::Scene;
-use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
+use crate::sim::{Diagnostic, Snapshot, Status};
 
 /// The size of tallies relative to those of panels, and their largest share of a tile's width.
 const TALLY: f64 = 0.54;
@@ -55,7 +56,7 @@ impl Key {
         let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
         let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
         let mut wordings = vec!["turned over".to_owned()];
-        let several = bodies().any(|body| body.elements.len() > 1);
+        let several = bodies().any(|body| body.elements().len() > 1);
         if several && tallies().all(Tally::has_rows) {
             if tallies().all(Tally::has_layers) {
                 wordings.push(format!("turned over (a square per {kind}, in layers)"));

@@ -5,12 +5,13 @@ use crate::look::CameraBoxes;
 use crate::picture::camera::Framing;
 use crate::picture::compose::draft::Draft;
 use crate::picture::framing::{self, Moment, Seen};
+use crate::runner::RunFrame;
 use crate::runner::history::NearObstacles;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
+use crate::sim::Status;
 use crate::sim::geometry;
-use crate::sim::{RunFrame, Status};
 use glam::DVec2;
 use std::borrow::Cow;
 

@@ -1,24 +1,25 @@
 //! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
-use super::body::Body;
-use super::broken::Broken;
+mod change;
+
+use crate::body::Body;
+use crate::broken::Broken;
 #[cfg(test)]
-use super::contact::ContactStage;
-use super::crew::Crew;
-use super::diagnose::Diagnose;
-use super::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts};
-use super::dynamics::{Dynamics, SpeedLimit};
-use super::field::Field;
-use super::integrate::{ByForces, Integrator, Method, Scales};
-use super::kernel::{ByKernel, Scheme};
-use super::model::{ElasticModel, Report, Scratch};
-use super::part::Part;
-use super::recording::{ByRecording, Recording, Unknown};
-use super::snapshot::Snapshot;
-use super::state::{Divergence, Memory, State, Status};
-use super::system::{Surroundings, System};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use crate::contact::ContactStage;
+use crate::crew::Crew;
+use crate::diagnose::Diagnose;
+use crate::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts};
+use crate::dynamics::{Dynamics, SpeedLimit};
+use crate::field::Field;
+use crate::integrate::{ByForces, Integrator, Method, Scales};
+use crate::kernel::{ByKernel, Scheme};
+use crate::model::{ElasticModel, Report, Scratch};
+use crate::part::Part;
+use crate::recording::{ByRecording, Recording, Unknown};
+use crate::snapshot::Snapshot;
+use crate::state::{Divergence, Memory, State, Status};
+use crate::surroundings::Surroundings;
+use crate::system::System;
 use std::sync::Arc;
 
 /// The method and step of a run.
@@ -43,8 +44,9 @@ impl Stepping {
 }
 
 /// The code that computes a step. The choice changes states by round-off in each step, which chaotic motion amplifies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema))]
+#[cfg_attr(feature = "scene", serde(rename_all = "kebab-case"))]
 pub enum Kernel {
     /// Vectorised, with the same bits on every machine and for any number of threads. All models have it, except `xpbd` and a shape-based model
     /// with `rotation = "vector-length"`, with `rotation = "linear-update"`, or with `rotation = "arctangent"` beside `bending` or `poisson`. A run
@@ -87,16 +89,32 @@ impl Moment {
 
 /// Bodies with their elastic models, as they move in time. Stepping cannot fail: a world that diverges stops at its
 /// last finite state, and [`Self::status`] reports it.
+///
+/// What acts on the bodies can change between steps: see [`Self::set_forces`], [`Self::set_obstacles`] and the functions beside them. A copy
+/// of a world goes on by itself, with one thread.
 pub struct World {
     system: System,
     dynamics: Box<dyn Dynamics>,
-    crew: Crew,
     limit: SpeedLimit,
     /// The field in snapshots.
     field: Option<Field>,
     /// The diagnostics in snapshots.
     wanted: Vec<Diagnostic>,
     state: State,
+}
+
+impl Clone for World {
+    fn clone(&self) -> Self {
+        let Self { system, dynamics, limit, field, wanted, state, .. } = self;
+        Self {
+            system: System { crew: Arc::default(), ..system.clone() },
+            dynamics: dynamics.copy(),
+            limit: *limit,
+            field: *field,
+            wanted: wanted.clone(),
+            state: state.clone(),
+        }
+    }
 }
 
 impl World {
@@ -138,42 +156,51 @@ impl World {
         let integrator = if is_projected { Integrator::SemiImplicitEuler } else { integrator };
         let scheme = Scheme::of(integrator).filter(|_| kernel == Kernel::Fast);
         let kernels = scheme.and_then(|scheme| {
-            let kernels = ByKernel::compile(bodies, scheme, surroundings.gravity, step)?;
+            let kernels = ByKernel::compile(bodies, scheme, step)?;
             Some((kernels, scheme))
         });
-        let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
+        let mut parts = Vec::new();
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
         let mut scales = Scales { length: 0.0, time: f64::INFINITY };
         for (number, ((body, model), projection)) in bodies.iter().zip(projections).enumerate() {
-            let forces = model.prepare(body);
+            let forces = Arc::from(model.prepare(body));
+            let projection = projection.map(Arc::from);
             let nodes = first_node..first_node + body.len();
             let start = model.start(body, &state.position[nodes.clone()]);
             let first = state.memory.model.len();
             state.memory.model.extend(start);
             let memory = first..state.memory.model.len();
-            let counts_global = model.counts_global(body);
-            let diagnose = Diagnose::new(body);
-            let (breaks, springs) = (Broken::new(*model, body), model.springs().len());
-            let own = Arc::clone(body);
-            let part =
-                Part { number, body: own, forces, projection, nodes, memory, counts_global, breaks, springs, diagnose };
-            let period = model.shortest_period(body);
-            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
+            let properties = model.properties(body);
+            let counts_fallbacks = properties.counts_fallbacks;
+            let diagnose = Arc::new(Diagnose::new(body));
+            let (breaks, springs) = (Broken::new(*model, body).map(Arc::new), model.springs().len());
+            let (own, period) = (Arc::clone(body), properties.shortest_period(body));
+            let part = Part {
+                number,
+                body: own,
+                forces,
+                projection,
+                nodes,
+                memory,
+                counts_fallbacks,
+                breaks,
+                period,
+                springs,
+                diagnose,
+            };
             scales.length = scales.length.max(body.extent());
             scales.time = scales.time.min(period / std::f64::consts::TAU);
-            limit = Some(limit.map_or(own, |limit| limit.max(own)));
             mass.extend_from_slice(&body.mass);
             first_node = part.nodes.end;
             parts.push(part);
         }
-        let Surroundings { gravity, obstacles, grips } = surroundings;
         let dynamics: Box<dyn Dynamics> = match kernels {
             Some((kernels, scheme)) => Box::new(ByKernel::new(&parts, kernels, scheme)),
             None => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
-        let system = System { parts, mass, gravity, obstacles, grips, contact: Vec::new(), step };
-        let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
-        Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
+        let system = System { parts, mass, surroundings, contact: Vec::new(), step, crew: Arc::default() };
+        let (limit, wanted) = (system.speed_limit(&state), Diagnostic::ALL.to_vec());
+        Self { system, dynamics, limit, field: None, wanted, state }
     }
 
     /// A world of bodies that moves as it was computed elsewhere, with moments at multiples of a `step` (s). Diagnostics that
@@ -211,20 +238,19 @@ impl World {
 
     /// Adds contact between nodes, after that of earlier stages.
     #[cfg(test)]
-    pub(crate) fn add_contact(&mut self, stage: Box<dyn ContactStage>) {
+    pub(crate) fn add_contact(&mut self, stage: Arc<dyn ContactStage>) {
         self.system.contact.push(stage);
     }
 
-    /// Sets the threads for vectorised steps and for diagnostics, which use as many as the body is large enough for. They
-    /// do not change any bit. By default one thread is used; [`Kernel::Reference`] uses the thread pool of the caller
-    /// (rayon) for forces and energies instead.
+    /// Sets the threads for steps and for diagnostics, which use as many as the body is large enough for. They do not change any
+    /// bit. By default one thread is used.
     pub fn set_crew(&mut self, crew: Crew) {
-        self.crew = crew;
+        self.system.crew = Arc::new(crew);
     }
 
-    /// The threads for vectorised steps.
-    pub fn crew(&mut self) -> &mut Crew {
-        &mut self.crew
+    /// The threads for steps and for diagnostics.
+    pub fn crew(&self) -> &Crew {
+        &self.system.crew
     }
 
     /// Sets the field that snapshots contain from now on; `None` for no field.
@@ -272,10 +298,10 @@ impl World {
     }
 
     fn advance_steps(&mut self, steps: u64) {
-        let Self { system, dynamics, crew, limit, state, .. } = self;
+        let Self { system, dynamics, limit, state, .. } = self;
         if state.status == Status::Ok {
             let last = dynamics.steps(state).saturating_add(steps);
-            let Err(runaway) = dynamics.advance(system, limit, state, steps, crew) else { return };
+            let Err(runaway) = dynamics.advance(system, limit, state, steps) else { return };
             dynamics.settle(state);
             dynamics.restart();
             state.status = Status::Diverged(dynamics.divergence(system, state, runaway));
@@ -289,10 +315,10 @@ impl World {
     /// diverged.
     pub fn runaway(&mut self) -> Option<(usize, f64)> {
         let Status::Diverged(Divergence { step, .. }) = self.state.status else { return None };
-        let Self { system, dynamics, crew, limit, state, .. } = self;
+        let Self { system, dynamics, limit, state, .. } = self;
         let mut before = State { steps: step - 1, status: Status::Ok, ..state.clone() };
         dynamics.restart();
-        let again = dynamics.advance(system, limit, &mut before, 1, crew);
+        let again = dynamics.advance(system, limit, &mut before, 1);
         dynamics.restart();
         Some((again.err()?.node, limit.at(system.interval(step - 1).end)))
     }
@@ -350,7 +376,7 @@ impl World {
     /// # Panics
     /// If there is no such part.
     pub fn report(&self, part: usize) -> Report {
-        self.dynamics.report(&self.system.parts[part], &self.state, None, &self.crew)
+        self.dynamics.report(&self.system.parts[part], &self.state, None, &self.system.crew)
     }
 
     /// α of Eq. (18) of each element of a part (rad/s²) in the last step, which must be one of an Euler method
@@ -389,14 +415,16 @@ impl World {
     /// The diagnostics in `wanted` of all bodies together, and those of each. The others are zero and cost no time.
     pub fn diagnostics_by_body(&self, wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
         let bodies = self.system.parts.iter().map(|part| {
-            let report = || self.dynamics.report(part, &self.state, None, &self.crew);
+            let report = || self.dynamics.report(part, &self.state, None, &self.system.crew);
             self.facts(part, report)
         });
         self.of_facts(&bodies.collect::<Vec<_>>(), wanted)
     }
 
     fn of_facts(&self, bodies: &[BodyFacts<'_>], wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
-        let of = |bodies: &[BodyFacts<'_>]| Diagnostics::of(Facts { bodies, gravity: self.system.gravity }, wanted);
+        let of = |bodies: &[BodyFacts<'_>]| {
+            Diagnostics::of(Facts { bodies, gravity: self.system.surroundings.gravity }, wanted)
+        };
         let of_bodies: Vec<_> = bodies.iter().map(std::slice::from_ref).map(of).collect();
         let all = match of_bodies[..] {
             [alone] => alone,
@@ -409,12 +437,19 @@ impl World {
         let global_rotations = part.global_rotations(&self.state.memory.model);
         let broken = part.count_broken(&self.state.memory.model);
         let gone = part.broken_elements(&self.state.memory.model);
-        part.diagnose.facts(part.nodes_of(self.state.nodes()), [global_rotations, broken], gone, report, &self.crew)
+        part.diagnose.facts(
+            part.nodes_of(self.state.nodes()),
+            [global_rotations, broken],
+            gone,
+            report,
+            &self.system.crew,
+        )
     }
 
     /// The present state of all bodies with its diagnostics.
     pub fn snapshot(&self) -> Snapshot {
-        let Self { system, dynamics, state, crew, field, wanted, .. } = self;
+        let Self { system, dynamics, state, field, wanted, .. } = self;
+        let crew = &*system.crew;
         let (mut bodies, mut energies) = (Vec::new(), Vec::new());
         for part in &system.parts {
             let mut of_nodes = Vec::new();

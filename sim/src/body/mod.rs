@@ -1,68 +1,96 @@
 //! The [`Body`]: nodes, masses and elements at rest.
 
 use super::carried::Carried;
-use super::element::{Dimension, ElementKind, Solids, around, kind};
+use super::element::{Dimension, ElementKind, around};
 use super::hull::{Hulls, bounds};
 use super::lists::IndexLists;
-use super::topology::{Elements, Faces, assign_faces};
+use super::topology::{Elements, Faces};
 use glam::DVec3;
 use std::sync::Arc;
 
+mod builder;
+
+pub use builder::{BodyError, NewBody};
+
 /// A deformable body at rest. It is immutable, and all runs of a scene share it.
+///
+/// ```
+/// use glam::DVec3;
+/// use localshape_sim::{Body, BodyError, IndexLists};
+///
+/// let nodes = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let of = |nodes: &[u32]| -> IndexLists { [nodes].into_iter().collect() };
+/// let body = Body::builder(nodes.clone()).elements(of(&[0, 1, 2, 3])).masses(vec![0.25; 4]).build()?;
+/// assert_eq!(body.faces().nodes.len(), 4);
+///
+/// let wrong = Body::builder(nodes).elements(of(&[0, 1, 2, 4])).build();
+/// assert_eq!(wrong.unwrap_err().to_string(), "element 0 names node 4; the last one is 3");
+/// # Ok::<(), BodyError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Whether it is in the plane or in space.
-    pub dimension: Dimension,
-    /// Rest position of each node (m).
-    pub rest: Vec<DVec3>,
-    /// Mass of each node (kg), positive.
-    pub mass: Vec<f64>,
-    /// The nodes of each element, two or more.
-    pub elements: IndexLists,
-    /// The kind of each element.
-    pub kinds: Vec<ElementKind>,
+    pub(crate) dimension: Dimension,
+    pub(crate) rest: Vec<DVec3>,
+    pub(crate) mass: Vec<f64>,
+    pub(crate) elements: IndexLists,
+    pub(crate) kinds: Vec<ElementKind>,
     /// The faces at rest of the elements of kind [`ElementKind::Other`].
-    pub hulls: Hulls,
-    /// The faces of the elements, or the listed ones.
-    pub faces: Faces,
-    /// The part of each element's volume that is filled, above 0 and at most 1. Its stiffness and its damping are in proportion; its
-    /// share in the masses of its nodes has to be, and then it does not shorten the stable step. `None` if all are full.
-    pub fill: Option<Vec<f64>>,
-    /// The stiffness and the damping of each element, if it is full, relative to those of the model; `None` if all are 1. Elements of
-    /// one material and different sizes differ in it.
-    pub stiffness: Option<Vec<f64>>,
-    /// The fine surface that stands for the body in pictures.
-    pub carried: Option<Arc<Carried>>,
+    pub(crate) hulls: Hulls,
+    pub(crate) faces: Faces,
+    pub(crate) fill: Option<Vec<f64>>,
+    pub(crate) stiffness: Option<Vec<f64>>,
+    pub(crate) carried: Option<Arc<Carried>>,
 }
 
 impl Body {
-    /// Makes a body from its nodes and elements. The kind of an element follows from the number of its nodes and from
-    /// `solids`; its faces follow from its kind, or are those of the convex hull of its nodes.
-    ///
-    /// `faces`, if given, replace the elements' own faces. Each is assigned to the element out of which its normal
-    /// points and the one into which it points, among the elements that contain all its nodes.
-    ///
-    /// # Panics
-    /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has to check its input.
-    pub fn new(
-        dimension: Dimension,
-        rest: Vec<DVec3>,
-        mass: Vec<f64>,
-        elements: IndexLists,
-        solids: Solids,
-        faces: Option<&IndexLists>,
-    ) -> Self {
-        assert_eq!(rest.len(), mass.len(), "one mass per node");
-        assert!(elements.indices().iter().all(|&node| (node as usize) < rest.len()), "node indices in range");
-        let kinds: Vec<_> = elements.iter().map(|nodes| kind(dimension, solids, nodes.len())).collect();
-        let hulls = Hulls::new(&elements, &kinds, &rest);
-        let faces = match faces {
-            Some(given) => {
-                assign_faces(given, &elements, |face, element| looks_out(face, &elements[element as usize], &rest))
-            }
-            None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
-        };
-        Self { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, stiffness: None, carried: None }
+    /// Begins a body of nodes with these positions at rest (m).
+    pub fn builder(rest: Vec<DVec3>) -> NewBody {
+        NewBody::new(rest)
+    }
+
+    /// Whether it is in the plane or in space.
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Rest position of each node (m).
+    pub fn rest(&self) -> &[DVec3] {
+        &self.rest
+    }
+
+    /// Mass of each node (kg), positive.
+    pub fn mass(&self) -> &[f64] {
+        &self.mass
+    }
+
+    /// The nodes of each element, two or more.
+    pub fn elements(&self) -> &IndexLists {
+        &self.elements
+    }
+
+    /// The kind of each element.
+    pub fn kinds(&self) -> &[ElementKind] {
+        &self.kinds
+    }
+
+    /// The faces of the elements, or those given in place of them.
+    pub fn faces(&self) -> &Faces {
+        &self.faces
+    }
+
+    /// The filled part of the volume of each element; `None` if all are full. See [`Self::with_fill`].
+    pub fn fill(&self) -> Option<&[f64]> {
+        self.fill.as_deref()
+    }
+
+    /// The relative stiffness of each element; `None` if all are 1. See [`Self::with_stiffness`].
+    pub fn stiffness(&self) -> Option<&[f64]> {
+        self.stiffness.as_deref()
+    }
+
+    /// The fine surface that the body carries.
+    pub fn carried(&self) -> Option<&Arc<Carried>> {
+        self.carried.as_ref()
     }
 
     /// All bodies as one, with the nodes, elements and faces of the first before those of the second, and so on. The whole
@@ -167,7 +195,7 @@ mod tests {
     fn two_prisms(faces: Option<&IndexLists>) -> Body {
         let elements =
             [&[3, 1, 4, 0, 2, 9, 5, 7, 6, 8][..], &[5, 6, 7, 8, 9, 10, 11, 12, 13, 14]].into_iter().collect();
-        Body::new(Dimension::Space, pentagons(3), vec![1.0; 15], elements, Solids::Ordered, faces)
+        Body::builder(pentagons(3)).elements(elements).faces(faces.cloned()).build().expect("a body")
     }
 
     #[test]
@@ -191,7 +219,7 @@ mod tests {
     fn a_flat_element_is_a_face_of_its_own_that_bounds_nothing() {
         let rest: Vec<_> = (0..7).map(f64::from).map(|at| DVec3::new(at, at * at, 0.5 * at)).collect();
         let elements = [&[0, 1, 2, 3, 4, 5, 6][..]; 2].into_iter().collect();
-        let body = Body::new(Dimension::Space, rest, vec![1.0; 7], elements, Solids::Ordered, None);
+        let body = Body::builder(rest).elements(elements).build().expect("a body");
         assert_eq!(body.faces.inner, [Some(0), Some(1)]);
         assert_eq!(body.faces.outer, [None, None]);
         assert_eq!(body.topology().springs(Springs::Edges).len(), 7);

@@ -1,0 +1,194 @@
+//! What acts on bodies from outside: gravity, forces on nodes, obstacles and kinematic constraints.
+
+use super::contact::{Obstacle, Shape};
+use super::grip::Grip;
+use super::motion::{Motion, Offset};
+use glam::DVec3;
+use std::fmt;
+use std::sync::Arc;
+
+/// Gravity, forces, obstacles and kinematic constraints around bodies.
+#[derive(Clone, Debug, Default)]
+pub struct Surroundings {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: DVec3,
+    /// Obstacles, in the order in which they act.
+    pub obstacles: Vec<Obstacle>,
+    /// Kinematic constraints, applied after all obstacles.
+    pub grips: Vec<Grip>,
+    /// A constant force on each node (N); empty for none.
+    pub forces: Vec<DVec3>,
+    /// Forces that change with time or with the positions of nodes, beside the constant ones.
+    pub loads: Vec<Arc<dyn Load>>,
+}
+
+/// Forces on nodes that change with time or with positions, such as wind, a push or a spring to a point outside. Closures with the arguments
+/// of [`Self::add`] are loads, too.
+pub trait Load: Send + Sync {
+    /// Adds the forces (N) on all nodes, which are at `position` (m) at a time (s), to `forces`, one for each node. The same arguments add
+    /// the same forces: a step may be evaluated more than once.
+    fn add(&self, time: f64, position: &[DVec3], forces: &mut [DVec3]);
+}
+
+impl<F: Fn(f64, &[DVec3], &mut [DVec3]) + Send + Sync> Load for F {
+    fn add(&self, time: f64, position: &[DVec3], forces: &mut [DVec3]) {
+        self(time, position, forces);
+    }
+}
+
+impl fmt::Debug for dyn Load {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Load")
+    }
+}
+
+/// A mistake in the surroundings of bodies: what was found where, and what was expected.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct WrongSurroundings {
+    /// What is wrong: a `node`, an `obstacle`, a `grip`, or `gravity`.
+    pub of: &'static str,
+    /// Its number, counted from 0.
+    pub at: usize,
+    /// The mistake.
+    pub message: String,
+}
+
+/// A value that is out of range: its name, what was found, and what was expected.
+type Fault = (&'static str, String, &'static str);
+
+impl Surroundings {
+    /// Checks everything for bodies with so many nodes together.
+    ///
+    /// # Errors
+    /// The first mistake.
+    pub fn check(&self, nodes: usize) -> Result<(), WrongSurroundings> {
+        if !self.gravity.is_finite() {
+            let message = format!("gravity is {}; expected finite numbers (m/s²)", self.gravity);
+            return Err(WrongSurroundings { of: "gravity", at: 0, message });
+        }
+        if !self.forces.is_empty() {
+            check_vectors("force", "forces", &self.forces, nodes)?;
+        }
+        let value = |of, at| {
+            move |(value, found, expected): Fault| {
+                let message = format!("the {value} of {of} {at} is {found}; expected {expected}");
+                WrongSurroundings { of, at, message }
+            }
+        };
+        for (at, obstacle) in self.obstacles.iter().enumerate() {
+            fault_of_obstacle(obstacle).map_or(Ok(()), Err).map_err(value("obstacle", at))?;
+        }
+        for (at, grip) in self.grips.iter().enumerate() {
+            check_nodes(&format!("grip {at}"), &grip.nodes, nodes)?;
+            fault_of_grip(grip).map_or(Ok(()), Err).map_err(value("grip", at))?;
+        }
+        Ok(())
+    }
+
+    /// Adds the forces from outside on nodes at `position` (m) at a time (s).
+    pub(super) fn push(&self, time: f64, position: &[DVec3], forces: &mut [DVec3]) {
+        forces.iter_mut().zip(&self.forces).for_each(|(sum, force)| *sum += *force);
+        self.loads.iter().for_each(|load| load.add(time, position, forces));
+    }
+}
+
+/// Checks that there is a finite vector for each node.
+pub(super) fn check_vectors(
+    one: &'static str,
+    what: &'static str,
+    given: &[DVec3],
+    nodes: usize,
+) -> Result<(), WrongSurroundings> {
+    if given.len() != nodes {
+        let message = format!("there are {} {what} for {nodes} nodes; give one for each", given.len());
+        return Err(WrongSurroundings { of: "node", at: nodes.min(given.len()), message });
+    }
+    match given.iter().position(|vector| !vector.is_finite()) {
+        Some(at) => {
+            let message = format!("the {one} of node {at} is {}; expected finite numbers", given[at]);
+            Err(WrongSurroundings { of: "node", at, message })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Checks that nodes are there.
+pub(super) fn check_nodes(of: &str, named: &[u32], nodes: usize) -> Result<(), WrongSurroundings> {
+    match named.iter().find(|&&node| node as usize >= nodes) {
+        Some(&node) => {
+            let message = format!("{of} names node {node}; the last one is {}", nodes.saturating_sub(1));
+            Err(WrongSurroundings { of: "node", at: node as usize, message })
+        }
+        None => Ok(()),
+    }
+}
+
+fn fault_of_obstacle(obstacle: &Obstacle) -> Option<Fault> {
+    let &Obstacle { ref shape, ref motion, pivot, restitution, friction, .. } = obstacle;
+    let vector =
+        |value, vector: DVec3| (!vector.is_finite()).then(|| (value, vector.to_string(), "finite numbers (m)"));
+    let unit = |normal: DVec3| {
+        let is_unit = (normal.length() - 1.0).abs() < 1e-6;
+        (!is_unit).then(|| ("normal", normal.to_string(), "a vector of length 1"))
+    };
+    let size =
+        |value, size: f64| (!(0.0..=f64::INFINITY).contains(&size)).then(|| (value, size.to_string(), "0 or more (m)"));
+    let finite = |value, size: f64| (!size.is_finite()).then(|| (value, size.to_string(), "a finite number (m)"));
+    let of_shape = match *shape {
+        Shape::Floor { normal, height } => unit(normal).or_else(|| finite("height", height)),
+        Shape::Plate { point, normal } => unit(normal).or_else(|| vector("point", point)),
+        Shape::Sphere { centre, radius } => vector("centre", centre).or_else(|| size("radius", radius)),
+        Shape::Capsule { from, to, radius } => {
+            vector("end", from).or_else(|| vector("end", to)).or_else(|| size("radius", radius))
+        }
+        Shape::Box { centre, half, rotation } => {
+            let turned =
+                (!rotation.is_normalized()).then(|| ("rotation", rotation.to_string(), "a quaternion of length 1"));
+            turned.or_else(|| vector("centre", centre)).or_else(|| size("half side", half.min_element()))
+        }
+    };
+    let bounce = || {
+        let wrong = !(0.0..=1.0).contains(&restitution);
+        wrong.then(|| ("restitution", restitution.to_string(), "a number from 0 to 1"))
+    };
+    let rough = || {
+        let wrong = !(friction >= 0.0 && friction.is_finite());
+        wrong.then(|| ("friction", friction.to_string(), "a finite number of 0 or more"))
+    };
+    of_shape.or_else(|| vector("pivot", pivot)).or_else(bounce).or_else(rough).or_else(|| fault_of_motion(motion))
+}
+
+fn fault_of_grip(grip: &Grip) -> Option<Fault> {
+    let is_wrong = !(grip.from <= grip.until && grip.from.is_finite());
+    let times = is_wrong.then(|| {
+        ("time", format!("from {} s until {} s", grip.from, grip.until), "a finite start that is not after the end")
+    });
+    times.or_else(|| fault_of_motion(&grip.motion))
+}
+
+fn is_finite(offset: &Offset) -> bool {
+    offset.shift.is_finite() && offset.rotation.is_finite()
+}
+
+fn fault_of_motion(motion: &Motion) -> Option<Fault> {
+    match motion {
+        Motion::Keys { keys, .. } => {
+            let is_wrong = |&at: &usize| {
+                let is_late = at == 0 || keys[at].time > keys[at - 1].time;
+                !(is_late && keys[at].time.is_finite() && is_finite(&keys[at].offset))
+            };
+            let at = (0..keys.len()).find(is_wrong)?;
+            Some((
+                "path",
+                format!("{:?} at key {at}", keys[at]),
+                "finite numbers, with a later time than the key before",
+            ))
+        }
+        Motion::Swing { period, phase, amplitude } => {
+            let is_wrong = !(*period > 0.0 && period.is_finite() && phase.is_finite() && is_finite(amplitude));
+            is_wrong.then(|| ("swing", format!("{motion:?}"), "finite numbers, with a period above 0 (s)"))
+        }
+        Motion::Still | Motion::Along(_) => None,
+    }
+}

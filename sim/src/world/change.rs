@@ -1,0 +1,133 @@
+//! Changes of a [`World`] between steps: of what acts on its bodies, and of their nodes.
+
+use super::World;
+use crate::contact::Obstacle;
+use crate::grip::Grip;
+use crate::state::Status;
+use crate::surroundings::{Load, Surroundings, WrongSurroundings, check_nodes, check_vectors};
+use glam::DVec3;
+use std::sync::Arc;
+
+impl World {
+    /// What acts on the bodies.
+    pub fn surroundings(&self) -> &Surroundings {
+        &self.system.surroundings
+    }
+
+    /// Sets the acceleration of gravity (m/s²) from now on.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub fn set_gravity(&mut self, gravity: DVec3) -> Result<(), WrongSurroundings> {
+        self.change(|around| around.gravity = gravity)
+    }
+
+    /// Sets the constant force on each node (N) from now on; none for an empty list. They cost a fast step little. The energy of
+    /// diagnostics does not contain their potential.
+    ///
+    /// # Errors
+    /// Not one force for each node, or one that is not finite.
+    pub fn set_forces(&mut self, forces: Vec<DVec3>) -> Result<(), WrongSurroundings> {
+        self.change(|around| around.forces = forces)
+    }
+
+    /// Adds a constant force (N) to each of some nodes, from now on.
+    ///
+    /// # Errors
+    /// A node that is not there, or a force that is not finite.
+    pub fn push(&mut self, nodes: &[u32], force: DVec3) -> Result<(), WrongSurroundings> {
+        let count = self.state.position.len();
+        check_nodes("a force", nodes, count)?;
+        self.change(|around| {
+            around.forces.resize(count, DVec3::ZERO);
+            nodes.iter().for_each(|&node| around.forces[node as usize] += force);
+        })
+    }
+
+    /// Sets the forces that change with time or positions, from now on. A fast step then reads all positions before each evaluation of
+    /// forces.
+    pub fn set_loads(&mut self, loads: Vec<Arc<dyn Load>>) {
+        self.pause();
+        self.system.surroundings.loads = loads;
+        self.go_on();
+    }
+
+    /// Sets the obstacles from now on. Their motions are functions of the time of the world, which goes on.
+    ///
+    /// # Errors
+    /// A value of an obstacle that is out of range.
+    pub fn set_obstacles(&mut self, obstacles: Vec<Obstacle>) -> Result<(), WrongSurroundings> {
+        self.change(|around| around.obstacles = obstacles)
+    }
+
+    /// Adds a kinematic constraint, after those that are there, and returns its number. From its start, or from now on if that has passed, it
+    /// holds its nodes where they are then.
+    ///
+    /// # Errors
+    /// A node that is not there, or a value that is out of range.
+    pub fn add_grip(&mut self, mut grip: Grip) -> Result<usize, WrongSurroundings> {
+        grip.from = grip.from.max(self.system.interval(self.steps()).begin);
+        let (number, width) = (self.system.surroundings.grips.len(), grip.width());
+        self.change(|around| around.grips.push(grip))?;
+        let memory = &mut self.state.memory.constraints;
+        memory.resize(memory.len() + width, 0.0);
+        Ok(number)
+    }
+
+    /// Takes a kinematic constraint away and returns it; those after it move up by one number. Its nodes go on with their velocities. `None`
+    /// if there is no such constraint.
+    pub fn remove_grip(&mut self, number: usize) -> Option<Grip> {
+        if number >= self.system.surroundings.grips.len() {
+            return None;
+        }
+        self.pause();
+        let grip = self.system.surroundings.grips.remove(number);
+        let first: usize = self.system.surroundings.grips[..number].iter().map(Grip::width).sum();
+        self.state.memory.constraints.drain(first..first + grip.width());
+        self.go_on();
+        Some(grip)
+    }
+
+    /// Sets the positions (m) and velocities (m/s) of all nodes. Nodes that are held go back to where they are held in the next step. A world
+    /// that has diverged stays so: see [`Self::set_state`].
+    ///
+    /// # Errors
+    /// Not one position and one velocity for each node, or one that is not finite.
+    pub fn set_nodes(&mut self, position: Vec<DVec3>, velocity: Vec<DVec3>) -> Result<(), WrongSurroundings> {
+        let count = self.state.position.len();
+        check_vectors("position", "positions", &position, count)?;
+        check_vectors("velocity", "velocities", &velocity, count)?;
+        self.pause();
+        (self.state.position, self.state.velocity) = (position, velocity);
+        self.go_on();
+        Ok(())
+    }
+
+    /// Changes the surroundings, unless there is a mistake in them.
+    fn change(&mut self, change: impl FnOnce(&mut Surroundings)) -> Result<(), WrongSurroundings> {
+        let mut changed = self.system.surroundings.clone();
+        change(&mut changed);
+        changed.check(self.state.position.len())?;
+        self.pause();
+        self.system.surroundings = changed;
+        self.go_on();
+        Ok(())
+    }
+
+    /// Takes the state out of the code that advances it.
+    fn pause(&mut self) {
+        self.settle();
+        self.dynamics.restart();
+    }
+
+    /// Forgets what follows from the surroundings before.
+    fn go_on(&mut self) {
+        // What an implicit method has told stays true.
+        if self.dynamics.unsolved(&self.state).is_none() {
+            self.state.memory.integrator.clear();
+        }
+        if self.state.status == Status::Ok {
+            self.limit = self.system.speed_limit(&self.state);
+        }
+    }
+}
