@@ -83,7 +83,7 @@ impl SpeedLimit {
         let mut elements_of_node = vec![0u32; body.len()];
         body.elements.indices().iter().for_each(|&node| elements_of_node[node as usize] += 1);
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
-        let Surroundings { gravity, obstacles, grips, forces, loads } = surroundings;
+        let Surroundings { gravity, obstacles, grips, forces, loads, .. } = surroundings;
         let pushing = obstacles.iter().map(|obstacle| {
             // A half-space is infinite: only its rotation near the body counts.
             let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);

@@ -62,7 +62,7 @@ pub fn kind(dimension: Dimension, solids: Solids, nodes: usize) -> ElementKind {
 /// The faces of an element of a kind in space, as positions in its own node list, counter-clockwise from outside.
 ///
 /// Polygons, segments and other elements have no table; see [`Elements`](super::topology::Elements).
-pub(super) fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
+pub(crate) fn face_table(kind: ElementKind) -> &'static [&'static [u8]] {
     match kind {
         ElementKind::Segment | ElementKind::Polygon | ElementKind::Other => &[],
         ElementKind::Triangle => &[&[0, 1, 2]],

@@ -68,7 +68,7 @@ mod world;
 pub use assembly::Assembly;
 pub use body::{Body, BodyError, NewBody};
 pub use carried::{Carried, Weights};
-pub use contact::{Contact, FrictionOf, Obstacle, Placed, Shape};
+pub use contact::{BodyContact, Contact, Contacts, FrictionOf, Obstacle, PairContact, Placed, Shape, Side};
 pub use crew::Crew;
 pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};
 pub use element::{Dimension, ElementKind, Solids};

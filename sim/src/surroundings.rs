@@ -1,6 +1,6 @@
 //! What acts on bodies from outside: gravity, forces on nodes, obstacles and kinematic constraints.
 
-use super::contact::{Obstacle, Shape};
+use super::contact::{Contacts, Obstacle, Shape};
 use super::grip::Grip;
 use super::motion::{Motion, Offset};
 use glam::DVec3;
@@ -14,6 +14,8 @@ pub struct Surroundings {
     pub gravity: DVec3,
     /// Obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
+    /// How surfaces meet; `None` for contact of nodes with obstacles alone, as in the paper.
+    pub contacts: Option<Contacts>,
     /// Kinematic constraints, applied after all obstacles.
     pub grips: Vec<Grip>,
     /// A constant force on each node (N); empty for none.

@@ -1,6 +1,6 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
-use super::contact::ContactStage;
+use super::contact::{End, Obstacle, Shape, Stage};
 use super::crew::Crew;
 use super::dynamics::SpeedLimit;
 use super::grip::Grip;
@@ -19,14 +19,28 @@ pub(super) struct System {
     /// Mass of each node (kg).
     pub(super) mass: Vec<f64>,
     pub(super) surroundings: Surroundings,
-    /// Contact that needs several nodes at once, applied after grips.
-    pub(super) contact: Vec<Arc<dyn ContactStage>>,
+    /// Contact of surfaces, applied after grips; `None` if no two can meet.
+    pub(super) contact: Option<Stage>,
     /// Time step ΔT (s).
     pub(super) step: f64,
     pub(super) crew: Arc<Crew>,
 }
 
 impl System {
+    /// The obstacles that nodes meet: half-spaces alone where surfaces meet the others.
+    pub(super) fn met_by_nodes(&self) -> Vec<&Obstacle> {
+        let is_met = |obstacle: &&Obstacle| {
+            self.surroundings.contacts.is_none() || matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. })
+        };
+        self.surroundings.obstacles.iter().filter(is_met).collect()
+    }
+
+    /// Makes contact of surfaces anew, as the surroundings say.
+    pub(super) fn renew_contact(&mut self) {
+        let Surroundings { contacts, obstacles, .. } = &self.surroundings;
+        self.contact = contacts.as_ref().and_then(|contacts| Stage::new(contacts, &self.parts, obstacles));
+    }
+
     /// The time interval of the step after `steps` steps.
     pub(super) fn interval(&self, steps: u64) -> Interval {
         Interval { begin: steps as f64 * self.step, end: (steps + 1) as f64 * self.step, step: self.step }
@@ -149,35 +163,23 @@ impl System {
         acceleration: Option<&[DVec3]>,
     ) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
-        for obstacle in &self.surroundings.obstacles {
+        for obstacle in self.met_by_nodes() {
             obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
         }
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);
         }
-        self.meet(interval, constraints, before.nodes(), position, velocity);
+        // Methods without accelerations end a step with the velocity that nodes had in it.
+        let is_euler = acceleration.is_none();
+        self.meet(End { interval, before: before.nodes(), position, velocity, is_euler }, constraints);
     }
 
-    /// Applies contact that needs several nodes at once, at the end of a step that began at `before`. `constraints` is the
-    /// memory of grips in the step.
-    pub(super) fn meet(
-        &self,
-        interval: Interval,
-        constraints: &[f64],
-        before: Nodes<'_>,
-        position: &mut [DVec3],
-        velocity: &mut [DVec3],
-    ) {
-        if self.contact.is_empty() {
-            return;
-        }
-        let mut inverse_mass: Vec<f64> = self.mass.iter().map(|mass| mass.recip()).collect();
-        for (grip, memory) in self.grips(constraints) {
-            grip.moved(interval, memory).for_each(|(node, ..)| inverse_mass[node] = 0.0);
-        }
-        for stage in &self.contact {
-            stage.resolve(&self.parts, interval, &inverse_mass, before, position, velocity);
-        }
+    /// Lets surfaces meet at the end of a step. `constraints` is the memory of grips in the step.
+    pub(super) fn meet(&self, end: End<'_>, constraints: &[f64]) {
+        let Some(stage) = &self.contact else { return };
+        let interval = end.interval;
+        let held = self.grips(constraints).flat_map(|(grip, memory)| grip.moved(interval, memory));
+        stage.resolve(end, held.map(|(node, ..)| node));
     }
 
     /// Places the nodes that grips hold at the end of a step where they are after a `share` of it, with their velocity in

@@ -1,5 +1,8 @@
 //! The shapes of obstacles, with the depth of a point inside and the direction out.
 
+use super::surface::Surface;
+use crate::carried::Weights;
+use crate::element::{Dimension, ElementKind, face_table};
 use glam::{DQuat, DVec3};
 
 /// The region that an obstacle fills at the start.
@@ -91,6 +94,34 @@ impl Shape {
             }
         };
         Contact { depth, normal }
+    }
+
+    /// Its surface, whose thickness is a radius, and its points at the start (m), which have numbers from `first` on; `None` for half-spaces.
+    pub(super) fn surface_of(&self, dimension: Dimension, first: u32) -> Option<(Surface, Vec<DVec3>)> {
+        let (points, facets, bars, radius): (Vec<DVec3>, Vec<_>, Vec<[u32; 2]>, f64) = match *self {
+            Self::Floor { .. } | Self::Plate { .. } => return None,
+            Self::Sphere { centre, radius } => (vec![centre], vec![([0; 3], 1)], vec![], radius),
+            Self::Capsule { from, to, radius } => (vec![from, to], vec![([0, 1, 1], 2)], vec![[0, 1]], radius),
+            Self::Box { centre, half, rotation } if dimension == Dimension::Plane => {
+                let corner = |[x, y]: [f64; 2]| centre + rotation * DVec3::new(x * half.x, y * half.y, 0.0);
+                let points = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
+                (points, (0..4).map(|at| ([at, (at + 1) % 4, at], 2)).collect(), vec![], 0.0)
+            }
+            Self::Box { centre, half, rotation } => {
+                let sign = |at: usize, axis: usize| if at >> axis & 1 == 0 { -1.0 } else { 1.0 };
+                let corner =
+                    |at: usize| centre + rotation * (DVec3::from_array([0, 1, 2].map(|axis| sign(at, axis))) * half);
+                let sides = face_table(ElementKind::Hexahedron).iter();
+                let corners = sides.map(|side| [0, 1, 2, 3].map(|at| u32::from(side[at])));
+                let halves = corners.flat_map(|[a, b, c, d]| [([a, b, c], 3), ([a, c, d], 3)]);
+                ((0..8).map(corner).collect(), halves.collect(), vec![], 0.0)
+            }
+        };
+        let mut own = Weights::default();
+        (first..).zip(&points).for_each(|(node, _)| own.push(&[node], &[1.0]));
+        let mut surface = Surface::new(own, facets, if dimension == Dimension::Space { &bars } else { &[] });
+        surface.thickness = radius;
+        Some((surface, points))
     }
 
     /// The greatest distance (m) by which round-off may move a point off the surface, for a point with coordinates of

@@ -1,9 +1,9 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::stepper::{PartStepper, Rollback, Scheme};
-use super::{Around, Compiled, Conditions, Held, PlaceNode};
+use super::{Around, Compiled, Conditions, Held, Meeting, PlaceNode};
 use crate::body::Body;
-use crate::contact::{Bound, Floor, Obstacle, Placed};
+use crate::contact::{Bound, End, Floor, Obstacle, Placed};
 use crate::crew::Crew;
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::grip::Grip;
@@ -65,9 +65,10 @@ impl Dynamics for ByKernel {
             rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
-        let Surroundings { gravity, obstacles, grips, forces, loads } = &system.surroundings;
+        let Surroundings { gravity, grips, forces, loads, .. } = &system.surroundings;
+        let obstacles = &system.met_by_nodes()[..];
         let spans: Vec<_> = grips.iter().map(Grip::span).collect();
-        let is_still = obstacles.iter().all(Obstacle::is_still);
+        let is_still = obstacles.iter().all(|obstacle| obstacle.is_still());
         let target = rollback.steps() + count;
         while rollback.steps() < target {
             let begin = rollback.steps();
@@ -92,6 +93,7 @@ impl Dynamics for ByKernel {
                     (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
                 }
             };
+            let is_euler = rollback.scheme().is_euler();
             let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
             let end = system.interval(begin).end;
             let overlap = |span: &Range<usize>, nodes: &Range<usize>| span.start < nodes.end && nodes.start < span.end;
@@ -107,7 +109,13 @@ impl Dynamics for ByKernel {
                 }
             };
             let meet = |step: u64, before: Nodes<'_>, position: &mut [DVec3], velocity: &mut [DVec3]| {
-                system.meet(system.interval(step), memory, before, position, velocity);
+                let interval = system.interval(step);
+                system.meet(End { interval, before, position, velocity, is_euler }, memory);
+            };
+            let alone = |step: u64, at: Nodes<'_>, most: u64| {
+                // Constraints may take nodes anywhere.
+                let stage = system.contact.as_ref().filter(|_| grips.is_empty())?;
+                stage.alone(at, system.interval(step), most)
             };
             let push = |step: u64, share: f64, position: &[DVec3], forces: &mut [DVec3]| {
                 forces.fill(DVec3::ZERO);
@@ -127,7 +135,7 @@ impl Dynamics for ByKernel {
                 floor: met.floor(),
                 grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
                 held: &[],
-                meet: if system.contact.is_empty() { None } else { Some(&meet) },
+                meeting: system.contact.as_ref().map(|_| Meeting { meet: &meet, alone: &alone }),
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
             let outcome = rollback.advance(until, &around, &system.crew);
@@ -183,8 +191,8 @@ struct Met<'a> {
 
 impl<'a> Met<'a> {
     /// For the given steps.
-    fn new(obstacles: &'a [Obstacle], system: &System, mut steps: Range<u64>, margin: f64) -> Self {
-        let (first, is_still) = (steps.start, obstacles.iter().all(Obstacle::is_still));
+    fn new(obstacles: &[&'a Obstacle], system: &System, mut steps: Range<u64>, margin: f64) -> Self {
+        let (first, is_still) = (steps.start, obstacles.iter().all(|obstacle| obstacle.is_still()));
         if is_still {
             steps.end = first + 1;
         }

@@ -125,9 +125,14 @@ pub(crate) struct Held<'a> {
     pub(crate) place: &'a Place<'a>,
 }
 
-/// Contact of nodes with each other at the end of a step of this number: changes the positions (m) and velocities (m/s) of
-/// all nodes after a step that began at the given ones.
-pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync + 'a;
+/// Contact of surfaces.
+#[derive(Clone, Copy)]
+pub(crate) struct Meeting<'a> {
+    /// Changes the positions (m) and velocities (m/s) of all nodes at the end of a step of this number that began at the given ones.
+    pub(crate) meet: &'a (dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync),
+    /// How many of some steps nodes can take without meeting, from the step of this number on, and the speed (m/s) up to which they can.
+    pub(crate) alone: &'a (dyn Fn(u64, Nodes<'_>, u64) -> Option<(u64, f64)> + Sync),
+}
 
 /// Writes the forces from outside on all nodes (N), which are at positions (m) after a share of the step of this number.
 pub(crate) type Push<'a> = dyn Fn(u64, f64, &[DVec3], &mut [DVec3]) + Sync + 'a;
@@ -141,7 +146,7 @@ pub(crate) struct Around<'a> {
     pub(crate) forces: &'a [DVec3],
     /// What makes these forces anew for each pass, if they change.
     pub(crate) push: Option<&'a Push<'a>>,
-    /// Bounds of the obstacles in all steps.
+    /// Bounds of the obstacles that nodes meet, in all steps.
     pub(crate) bounds: &'a [Bound],
     /// The range of the bounds of a step.
     pub(crate) row: &'a (dyn Fn(u64) -> Range<usize> + Sync),
@@ -154,8 +159,8 @@ pub(crate) struct Around<'a> {
     pub(crate) grips: Option<Held<'a>>,
     /// Whether each node of the part is one of them, which has no speed of its own; empty if none is.
     pub(crate) held: &'a [bool],
-    /// Contact that needs all nodes, if there is any.
-    pub(crate) meet: Option<&'a Meet<'a>>,
+    /// Contact of surfaces, if they can meet.
+    pub(crate) meeting: Option<Meeting<'a>>,
     /// The greatest speed (m/s) in a step.
     pub(crate) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
 }

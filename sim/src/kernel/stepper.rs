@@ -2,7 +2,7 @@
 //! run diverges.
 
 use super::update::Stage;
-use super::{Around, Lost};
+use super::{Around, Lost, Meeting};
 use crate::crew::Crew;
 use crate::integrate::Integrator;
 use crate::integrate::composition::{self, Composition};
@@ -26,6 +26,11 @@ pub(crate) enum Scheme {
 }
 
 impl Scheme {
+    /// Whether nodes move with their velocities at the end of a step.
+    pub(crate) fn is_euler(self) -> bool {
+        matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
+    }
+
     /// Whether nodes keep an acceleration from one pass to the next.
     pub(crate) fn keeps_acceleration(self) -> bool {
         matches!(self, Self::VelocityVerlet | Self::Composition(_))
@@ -165,7 +170,7 @@ impl PartStepper {
         Passes {
             scheme,
             is_damped: self.stepper.is_damped(),
-            is_interrupted: is_held || around.meet.is_some() || around.push.is_some(),
+            is_interrupted: is_held || around.meeting.is_some() || around.push.is_some(),
             first: steps.start,
             steps: steps.end - steps.start,
         }
@@ -207,6 +212,8 @@ pub(crate) struct Rollback {
     steps: u64,
     /// The number of steps of the copy, if steps since then may be repeated.
     kept: Option<u64>,
+    /// The nodes of all parts before and after contact.
+    buffers: [State; 2],
 }
 
 impl Rollback {
@@ -215,7 +222,9 @@ impl Rollback {
 
     /// Parts in the order of their nodes.
     pub(crate) fn new(parts: Vec<PartStepper>, scheme: Scheme) -> Self {
-        Self { parts, scheme, steps: 0, kept: None }
+        let count = parts.last().map_or(0, |part| part.nodes.end);
+        let buffers = [(); 2].map(|()| State::at_rest(vec![DVec3::ZERO; count]));
+        Self { parts, scheme, steps: 0, kept: None, buffers }
     }
 
     /// Reads a state after `steps` steps.
@@ -238,6 +247,11 @@ impl Rollback {
         let part = self.parts.partition_point(|part| part.nodes.end <= node);
         let PartStepper { stepper, nodes, .. } = &mut self.parts[part];
         stepper.node(node - nodes.start)
+    }
+
+    /// How positions and velocities are advanced.
+    pub(crate) fn scheme(&self) -> Scheme {
+        self.scheme
     }
 
     /// Steps taken.
@@ -267,6 +281,10 @@ impl Rollback {
                 self.kept = Some(from);
             }
             let mut end = until.min(from + Self::KEPT);
+            if let Some(count) = self.run_alone(end - self.steps, around, crew) {
+                self.steps += count;
+                continue;
+            }
             if self.run(self.steps..end, around, crew).is_none() {
                 self.steps = end;
                 continue;
@@ -287,10 +305,31 @@ impl Rollback {
         Ok(())
     }
 
+    /// Takes as many of some steps as nodes can take without meeting, and returns their number; `None` if they may meet. The steps since the
+    /// copy are then taken again, if nodes have become so fast that they might have met.
+    fn run_alone(&mut self, most: u64, around: &Around<'_>, crew: &Crew) -> Option<u64> {
+        let meeting = around.meeting?;
+        let mut after = std::mem::take(&mut self.buffers[1]);
+        self.read(&mut after);
+        let found = (meeting.alone)(self.steps, after.nodes(), most);
+        self.buffers[1] = after;
+        let (count, speed) = found?;
+        let limit = |step| (around.speed_limit)(step).min(speed);
+        let apart = Around { meeting: None, speed_limit: &limit, ..*around };
+        if self.run(self.steps..self.steps + count, &apart, crew).is_none() {
+            return Some(count);
+        }
+        self.parts.iter_mut().for_each(|part| part.stepper.restore());
+        let from = self.kept?;
+        let lost = self.run(from..self.steps, around, crew);
+        debug_assert!(lost.is_none(), "steps that were taken before");
+        None
+    }
+
     /// Takes steps, until a node is too fast. The state is then undefined.
     fn run(&mut self, steps: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let (scheme, count) = (self.scheme, self.parts.last()?.nodes.end);
-        if around.meet.is_none() && around.push.is_none() {
+        if around.meeting.is_none() && around.push.is_none() {
             return self.each(crew, |part, crew| {
                 let passes = part.passes(scheme, &steps, around);
                 part.run(passes, 0..passes.len(), around, crew)
@@ -298,33 +337,40 @@ impl Rollback {
         }
         // Passes that are interrupted have the same numbers and contact in all parts.
         let outline = self.parts[0].passes(scheme, &steps, around);
-        let [mut before, mut after] = [(); 2].map(|()| State::at_rest(vec![DVec3::ZERO; count]));
-        let (mut begun, mut forces) = (None, around.forces.to_vec());
+        let mut buffers = std::mem::take(&mut self.buffers);
+        let [before, after] = &mut buffers;
+        let (mut begun, mut is_read, mut forces) = (None, false, around.forces.to_vec());
+        let mut lost = None;
         for pass in 0..outline.len() {
             let Pass { number, stage, shares, .. } = outline.get(pass);
-            if around.meet.is_some() && begun.replace(number) != Some(number) {
-                self.read(&mut before);
+            if around.meeting.is_some() && begun.replace(number) != Some(number) {
+                // What contact has left is the start of the next step.
+                if is_read { std::mem::swap(before, after) } else { self.read(before) }
             }
             if let Some(push) = around.push {
-                self.read(&mut after);
+                self.read(after);
                 forces.resize(count, DVec3::ZERO);
                 push(number, shares[0], &after.position, &mut forces);
             }
             let around = &Around { forces: &forces, ..*around };
-            let lost = self.each(crew, |part, crew| {
+            lost = self.each(crew, |part, crew| {
                 let passes = part.passes(scheme, &steps, around);
                 part.run(passes, pass..pass + 1, around, crew)
             });
             if lost.is_some() {
-                return lost;
+                break;
             }
-            if let Some(meet) = around.meet.filter(|_| stage.has_contact()) {
-                self.read(&mut after);
+            if let Some(Meeting { meet, .. }) = around.meeting.filter(|_| stage.has_contact()) {
+                self.read(after);
                 meet(number, before.nodes(), &mut after.position, &mut after.velocity);
-                self.write(&after);
+                self.write(after);
+                is_read = true;
+            } else {
+                is_read = false;
             }
         }
-        None
+        self.buffers = buffers;
+        lost
     }
 
     /// Calls `advance` with each part and its threads, and returns the first of all nodes that are too fast. A part that

@@ -110,6 +110,7 @@ impl World {
         changed.check(self.state.position.len())?;
         self.pause();
         self.system.surroundings = changed;
+        self.system.renew_contact();
         self.go_on();
         Ok(())
     }

@@ -4,8 +4,6 @@ mod change;
 
 use crate::body::Body;
 use crate::broken::Broken;
-#[cfg(test)]
-use crate::contact::ContactStage;
 use crate::crew::Crew;
 use crate::diagnose::Diagnose;
 use crate::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts};
@@ -198,7 +196,8 @@ impl World {
             Some((kernels, scheme)) => Box::new(ByKernel::new(&parts, kernels, scheme)),
             None => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
-        let system = System { parts, mass, surroundings, contact: Vec::new(), step, crew: Arc::default() };
+        let mut system = System { parts, mass, surroundings, contact: None, step, crew: Arc::default() };
+        system.renew_contact();
         let (limit, wanted) = (system.speed_limit(&state), Diagnostic::ALL.to_vec());
         Self { system, dynamics, limit, field: None, wanted, state }
     }
@@ -234,12 +233,6 @@ impl World {
         self.settle();
         self.state.memory.integrator.clear();
         self.dynamics = Box::new(ByForces::new(method, &self.state));
-    }
-
-    /// Adds contact between nodes, after that of earlier stages.
-    #[cfg(test)]
-    pub(crate) fn add_contact(&mut self, stage: Arc<dyn ContactStage>) {
-        self.system.contact.push(stage);
     }
 
     /// Sets the threads for steps and for diagnostics, which use as many as the body is large enough for. They do not change any

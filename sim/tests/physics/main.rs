@@ -35,5 +35,6 @@ mod shape_matching;
 mod stability;
 mod state;
 mod support;
+mod surfaces;
 mod threads;
 mod xpbd;

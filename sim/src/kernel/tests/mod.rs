@@ -168,7 +168,7 @@ pub(super) const FREE: Around<'_> = Around {
     floor: None,
     grips: None,
     held: &[],
-    meet: None,
+    meeting: None,
     speed_limit: &|_| f64::MAX,
 };
 

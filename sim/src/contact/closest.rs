@@ -1,0 +1,194 @@
+//! Closest points of points, segments and triangles, and whether they are a local minimum of the distance.
+//!
+//! C. Ericson, Real-Time Collision Detection (2005), sections 5.1.2, 5.1.5 and 5.1.9.
+
+use glam::DVec3;
+
+/// The closest point of a segment or triangle to a point, as shares of its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Nearest {
+    /// The weight of each corner, with the sum 1.
+    pub(super) shares: [f64; 3],
+    /// Where it is.
+    pub(super) on: On,
+}
+
+/// The part of a facet on which a closest point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum On {
+    /// Inside, or between the ends of a segment.
+    Inside,
+    /// Between corner `i` and the next one.
+    Side(usize),
+    /// On corner `i`.
+    Corner(usize),
+}
+
+/// The closest point of a segment.
+pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> Nearest {
+    let along = b - a;
+    let (way, whole) = (along.dot(point - a), along.length_squared());
+    if way <= 0.0 || whole == 0.0 {
+        return Nearest { shares: [1.0, 0.0, 0.0], on: On::Corner(0) };
+    }
+    if way >= whole {
+        return Nearest { shares: [0.0, 1.0, 0.0], on: On::Corner(1) };
+    }
+    let share = way / whole;
+    Nearest { shares: [1.0 - share, share, 0.0], on: On::Inside }
+}
+
+/// The closest point of a triangle.
+pub(super) fn of_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> Nearest {
+    let corner = |at: usize| {
+        let mut shares = [0.0; 3];
+        shares[at] = 1.0;
+        Nearest { shares, on: On::Corner(at) }
+    };
+    let side = |at: usize, share: f64| {
+        let mut shares = [0.0; 3];
+        (shares[at], shares[(at + 1) % 3]) = (1.0 - share, share);
+        Nearest { shares, on: On::Side(at) }
+    };
+    let (ab, ac) = (b - a, c - a);
+    let [from_a, from_b, from_c] = [a, b, c].map(|corner| point - corner);
+    let (a1, a2) = (ab.dot(from_a), ac.dot(from_a));
+    if a1 <= 0.0 && a2 <= 0.0 {
+        return corner(0);
+    }
+    let (b1, b2) = (ab.dot(from_b), ac.dot(from_b));
+    if b1 >= 0.0 && b2 <= b1 {
+        return corner(1);
+    }
+    let (c1, c2) = (ab.dot(from_c), ac.dot(from_c));
+    if c2 >= 0.0 && c1 <= c2 {
+        return corner(2);
+    }
+    let opposite_c = a1 * b2 - b1 * a2;
+    if opposite_c <= 0.0 && a1 >= 0.0 && b1 <= 0.0 {
+        return side(0, a1 / (a1 - b1));
+    }
+    let opposite_b = c1 * a2 - a1 * c2;
+    if opposite_b <= 0.0 && a2 >= 0.0 && c2 <= 0.0 {
+        return side(2, c2 / (c2 - a2));
+    }
+    let opposite_a = b1 * c2 - c1 * b2;
+    if opposite_a <= 0.0 && b2 >= b1 && c1 >= c2 {
+        return side(1, (b2 - b1) / ((b2 - b1) + (c1 - c2)));
+    }
+    let whole = opposite_a + opposite_b + opposite_c;
+    let (v, w) = (opposite_b / whole, opposite_c / whole);
+    Nearest { shares: [1.0 - v - w, v, w], on: On::Inside }
+}
+
+/// The closest points of two segments: how far along each they are, from 0 to 1.
+pub(super) fn of_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [f64; 2] {
+    let (one, other, from) = (b - a, d - c, a - c);
+    let (aa, cc, ac) = (one.length_squared(), other.length_squared(), one.dot(other));
+    let (at_a, at_c) = (one.dot(from), other.dot(from));
+    if aa == 0.0 || cc == 0.0 {
+        let first = if aa == 0.0 { 0.0 } else { (-at_a / aa).clamp(0.0, 1.0) };
+        return [first, if cc == 0.0 { 0.0 } else { (at_c / cc).clamp(0.0, 1.0) }];
+    }
+    let sine = aa * cc - ac * ac;
+    let first = if sine > 0.0 { ((ac * at_c - at_a * cc) / sine).clamp(0.0, 1.0) } else { 0.0 };
+    let second = (ac * first + at_c) / cc;
+    match second {
+        ..0.0 => [(-at_a / aa).clamp(0.0, 1.0), 0.0],
+        1.0.. => [((ac - at_a) / aa).clamp(0.0, 1.0), 1.0],
+        _ => [first, second],
+    }
+}
+
+/// Whether a way from a closest point leads away from the surface there: towards none of the `around` corners of the faces that meet at the
+/// point, to round-off. Two faces that continue each other may both count, which does no harm; none would.
+pub(super) fn leads_away(way: DVec3, from: DVec3, mut around: impl Iterator<Item = DVec3>) -> bool {
+    const ROUND_OFF: f64 = 1e-12;
+    let length = way.length();
+    around.all(|corner| {
+        let inwards = corner - from;
+        inwards.dot(way) <= ROUND_OFF * length * inwards.length()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of a row of numbers that look random.
+    fn points() -> impl FnMut() -> DVec3 {
+        let mut seed = 5u64;
+        move || {
+            let mut number = || {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+            };
+            DVec3::new(number(), number(), number())
+        }
+    }
+
+    fn mix(shares: [f64; 3], corners: [DVec3; 3]) -> DVec3 {
+        (0..3).map(|at| corners[at] * shares[at]).sum()
+    }
+
+    /// No other point of a fine grid on the triangle is nearer, and the way to the point is perpendicular to what it lies on.
+    #[test]
+    fn no_point_of_a_triangle_is_nearer() {
+        let mut next = points();
+        let mut seen = [0; 3];
+        for _ in 0..2000 {
+            let (point, corners) = (next() * 1.5, [next(), next(), next()]);
+            let nearest = of_triangle(point, corners);
+            let at = mix(nearest.shares, corners);
+            let distance = at.distance(point);
+            for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {
+                let [v, w] = [i, j].map(|k| f64::from(k) / 20.0);
+                assert!(distance <= mix([1.0 - v - w, v, w], corners).distance(point) + 1e-13);
+            }
+            let across = |along: DVec3| assert!((point - at).dot(along).abs() < 1e-12 * along.length());
+            match nearest.on {
+                On::Inside => [1, 2].iter().for_each(|&to| across(corners[to] - corners[0])),
+                On::Side(side) => across(corners[(side + 1) % 3] - corners[side]),
+                On::Corner(corner) => assert_eq!(at, corners[corner]),
+            }
+            seen[match nearest.on {
+                On::Inside => 0,
+                On::Side(_) => 1,
+                On::Corner(_) => 2,
+            }] += 1;
+        }
+        assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
+    }
+
+    #[test]
+    fn no_points_of_two_segments_are_nearer() {
+        let mut next = points();
+        for round in 0..2000 {
+            let (one, mut other) = ([next(), next()], [next(), next()]);
+            if round % 5 == 0 {
+                // Parallel.
+                other[1] = other[0] + (one[1] - one[0]) * 0.7;
+            }
+            let [s, t] = of_segments(one, other);
+            let distance = one[0].lerp(one[1], s).distance(other[0].lerp(other[1], t));
+            for (i, j) in (0..=20).flat_map(|i| (0..=20).map(move |j| (i, j))) {
+                let [v, w] = [i, j].map(|k| f64::from(k) / 20.0);
+                assert!(distance <= one[0].lerp(one[1], v).distance(other[0].lerp(other[1], w)) + 1e-12);
+            }
+            let ends = of_segment(one[0], other);
+            let to_end = mix(ends.shares, [other[0], other[1], DVec3::ZERO]).distance(one[0]);
+            assert!(distance <= to_end + 1e-13);
+        }
+    }
+
+    /// Above an edge of a roof the way up leads away, the way to the side does not.
+    #[test]
+    fn a_way_leads_away_from_convex_edges_only() {
+        let sides = [DVec3::new(1.0, -0.3, 0.0), DVec3::new(-1.0, -0.3, 0.0)];
+        let away = |way| leads_away(way, DVec3::ZERO, sides.into_iter());
+        assert!(away(DVec3::Y) && away(DVec3::new(0.2, 1.0, 0.0)));
+        assert!(!away(DVec3::X) && !away(-DVec3::Y));
+        // A flat place: both sides count, to round-off.
+        assert!(leads_away(DVec3::Y, DVec3::ZERO, [DVec3::new(1.0, 1e-16, 0.0), -DVec3::X].into_iter()));
+    }
+}

@@ -1,0 +1,418 @@
+//! Two surfaces that may meet: lists of their features that are near each other, and what of them touches in a step.
+
+use super::closest::{self, On};
+use super::rule::{Law, Term, Touch};
+use super::surface::{Facet, Surface};
+use crate::carried::Weights;
+use glam::DVec3;
+
+/// Features of two surfaces, and the way that they move at least until they can touch.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    features: [u32; 2],
+    /// The [`Pair::way`] from which on it is looked at (m).
+    wake: f64,
+}
+
+/// The kinds of features that meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A point of the first surface and a facet of the second.
+    PointFacet,
+    /// A facet of the first and a point of the second.
+    FacetPoint,
+    Edges,
+}
+
+const KINDS: [Kind; 3] = [Kind::PointFacet, Kind::FacetPoint, Kind::Edges];
+
+/// Two surfaces that may meet, or one with itself.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
+    /// The numbers of the surfaces, the lesser first.
+    pub(super) of: [usize; 2],
+    pub(super) law: Law,
+    /// The way that points of one have moved relative to the other at most since the beginning (m).
+    way: f64,
+    /// Up to which way the lists hold all that can touch; `None` before they are made.
+    until: Option<f64>,
+    candidates: [Vec<Candidate>; 3],
+}
+
+/// Nodes and points of obstacles, numbered after them.
+#[derive(Clone, Copy)]
+pub(super) struct Places<'a> {
+    pub(super) nodes: &'a [DVec3],
+    pub(super) obstacles: &'a [DVec3],
+}
+
+impl Places<'_> {
+    pub(super) fn node(&self, node: u32) -> DVec3 {
+        let node = node as usize;
+        if node < self.nodes.len() { self.nodes[node] } else { self.obstacles[node - self.nodes.len()] }
+    }
+
+    /// A point as the weighted mean of its nodes.
+    pub(super) fn point(&self, points: &Weights, point: u32) -> DVec3 {
+        match points.of(point as usize) {
+            (&[node], _) => self.node(node),
+            (nodes, weights) => nodes.iter().zip(weights).map(|(&node, &weight)| self.node(node) * weight).sum(),
+        }
+    }
+}
+
+/// What is known of a step when pairs are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub(super) surfaces: &'a [Surface],
+    /// At rest; only for bodies that meet themselves.
+    pub(super) rest: Places<'a>,
+    /// At the start of the step.
+    pub(super) start: Places<'a>,
+    /// At the end of the step, before contact.
+    pub(super) end: Places<'a>,
+    /// The velocities at the start and at the end (m/s).
+    pub(super) velocity: [Places<'a>; 2],
+    pub(super) inverse_mass: &'a [f64],
+    /// See [`super::rule::Moved::is_euler`].
+    pub(super) is_euler: bool,
+}
+
+/// What touches in a step: first points with facets, then edges, each in the order of pairs and features.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Touches {
+    pub(super) of_points: Vec<Touch>,
+    pub(super) of_edges: Vec<Touch>,
+    pub(super) terms: Vec<Term>,
+}
+
+impl Touches {
+    pub(super) fn clear(&mut self) {
+        self.of_points.clear();
+        self.of_edges.clear();
+        self.terms.clear();
+    }
+}
+
+/// Two closest points, each as weighted points of its surface.
+struct Closest {
+    way: DVec3,
+    /// For each of the two surfaces its points and their shares.
+    shares: [[(u32, f64); 3]; 2],
+    /// Whether it is a contact: a local minimum of the distance that no other feature counts.
+    counts: bool,
+}
+
+impl Pair {
+    pub(super) fn new(of: [usize; 2], law: Law) -> Self {
+        Self { of, law, way: 0.0, until: None, candidates: Default::default() }
+    }
+
+    /// Adds the way since the last step (m). The lists are made anew if features that are not in them might touch in this one,
+    /// in which points move relative to each other by `ahead` (m).
+    pub(super) fn go(&mut self, seen: &Seen<'_>, way: f64, ahead: f64) {
+        self.way += way;
+        let needed = self.way + 2.0 * ahead;
+        if self.until.is_none_or(|until| needed > until) {
+            self.list(seen, ahead);
+        }
+    }
+
+    /// Lists the features within a reach that lasts for some steps.
+    fn list(&mut self, seen: &Seen<'_>, ahead: f64) {
+        /// A share of the size of a cell, and of the way of a step.
+        const SKIN: [f64; 2] = [2.0, 8.0];
+        let [one, other] = self.of.map(|surface| &seen.surfaces[surface]);
+        let skin = (SKIN[0] * (one.thickness + other.thickness)).max(SKIN[1] * ahead);
+        let reach = self.law.gap + skin;
+        self.candidates.iter_mut().for_each(Vec::clear);
+        let [mine, theirs] = [one, other].map(|surface| Extent::of(surface, &seen.start));
+        let apart = mine.distance(&theirs);
+        if apart >= reach && self.of[0] != self.of[1] {
+            self.until = Some(self.way + (apart - self.law.gap));
+            return;
+        }
+        self.until = Some(self.way + skin);
+        let common = mine.grown(reach).common(&theirs.grown(reach));
+        let place = |surface: &Surface, point: u32| seen.start.point(&surface.points, point);
+        let lists = |surface: &Surface| {
+            let points = (0..surface.points.len() as u32).map(|point| (point, Extent::at(place(surface, point))));
+            let facets = (0u32..).zip(&surface.facets).map(|(number, facet)| {
+                (number, Extent::around(facet.used().iter().map(|&corner| place(surface, corner))))
+            });
+            let edges = (0u32..).zip(&surface.edges);
+            let edges =
+                edges.map(|(number, ends)| (number, Extent::around(ends.iter().map(|&end| place(surface, end)))));
+            [near(points, &common), near(facets, &common), near(edges, &common)]
+        };
+        let [of_one, of_other] = [lists(one), lists(other)];
+        let axis = common.longest_axis();
+        for (at, kind) in KINDS.into_iter().enumerate() {
+            let sides = match kind {
+                Kind::PointFacet => [&of_one[0], &of_other[1]],
+                // A surface meets itself only once.
+                Kind::FacetPoint if self.of[0] == self.of[1] => continue,
+                Kind::FacetPoint => [&of_one[1], &of_other[0]],
+                Kind::Edges => [&of_one[2], &of_other[2]],
+            };
+            let mut found = Vec::new();
+            sweep(sides, reach, axis, |features| found.push(features));
+            if self.of[0] == self.of[1] {
+                found.retain(|&features| is_apart_at_rest(one, kind, features, &seen.rest, 2.0 * self.law.gap));
+            }
+            found.sort_unstable();
+            self.candidates[at]
+                .extend(found.into_iter().map(|features| Candidate { features, wake: f64::NEG_INFINITY }));
+        }
+    }
+
+    /// Adds what touches in this step to `touches`.
+    pub(super) fn look(&mut self, seen: &Seen<'_>, ahead: f64, touches: &mut Touches) {
+        let Self { of, law, way, candidates, .. } = self;
+        let [one, other] = of.map(|surface| &seen.surfaces[surface]);
+        let due = *way + 2.0 * ahead;
+        for (kind, list) in KINDS.into_iter().zip(candidates) {
+            for candidate in list.iter_mut().filter(|candidate| candidate.wake <= due) {
+                let closest = closest(kind, [one, other], of[0] == of[1], candidate.features, &seen.start);
+                let distance = closest.way.length();
+                if distance >= law.gap + 2.0 * ahead {
+                    candidate.wake = *way + (distance - law.gap);
+                } else if closest.counts && distance > 0.0 {
+                    touches.push(kind, [one, other], *law, &closest, distance, ahead, seen);
+                }
+            }
+        }
+    }
+}
+
+impl Touches {
+    /// Adds a pair of closest points, if it may come nearer than its gap in this step.
+    #[expect(clippy::too_many_arguments, reason = "the parts of one pair")]
+    fn push(
+        &mut self,
+        kind: Kind,
+        surfaces: [&Surface; 2],
+        law: Law,
+        closest: &Closest,
+        distance: f64,
+        ahead: f64,
+        seen: &Seen<'_>,
+    ) {
+        let first = self.terms.len();
+        for (surface, (shares, sign)) in surfaces.into_iter().zip(closest.shares.iter().zip([1.0, -1.0])) {
+            for &(point, share) in shares.iter().filter(|(_, share)| *share != 0.0) {
+                let (nodes, weights) = surface.points.of(point as usize);
+                for (&node, &weight) in nodes.iter().zip(weights) {
+                    let weight = sign * share * weight;
+                    match self.terms[first..].iter_mut().find(|term| term.node == node) {
+                        Some(term) => term.weight += weight,
+                        None => self.terms.push(Term { node, weight }),
+                    }
+                }
+            }
+        }
+        let terms = &self.terms[first..];
+        let inverse = |node: u32| seen.inverse_mass.get(node as usize).copied().unwrap_or(0.0);
+        let mobility: f64 = terms.iter().map(|term| term.weight * term.weight * inverse(term.node)).sum();
+        let normal = closest.way / distance;
+        let along = |places: &Places<'_>| {
+            normal.dot(terms.iter().map(|term| places.node(term.node) * term.weight).sum::<DVec3>())
+        };
+        if mobility == 0.0 || along(&seen.end) >= law.gap + ahead {
+            self.terms.truncate(first);
+            return;
+        }
+        let late = 0.5 * (along(&seen.velocity[0]) - along(&seen.velocity[1]));
+        let [to_rebound, to_path] = if seen.is_euler { [late, 0.0] } else { [2.0 * late, late] };
+        let terms = [first, self.terms.len()].map(|at| at as u32);
+        let list = if kind == Kind::Edges { &mut self.of_edges } else { &mut self.of_points };
+        list.push(Touch { law, normal, distance, mobility, to_rebound, to_path, terms });
+    }
+}
+
+/// The closest points of two features.
+fn closest(kind: Kind, [one, other]: [&Surface; 2], is_same: bool, features: [u32; 2], at: &Places<'_>) -> Closest {
+    match kind {
+        Kind::PointFacet => point_facet([one, other], features, true, is_same, at),
+        Kind::FacetPoint => {
+            let [facet, point] = features;
+            let Closest { way, shares: [first, second], counts } =
+                point_facet([other, one], [point, facet], false, is_same, at);
+            Closest { way: -way, shares: [second, first], counts }
+        }
+        Kind::Edges => edges([one, other], features, at),
+    }
+}
+
+/// `counts_corners`: whether two points that meet are counted here, and not from the other side.
+fn point_facet(
+    [one, other]: [&Surface; 2],
+    [point, facet]: [u32; 2],
+    counts_corners: bool,
+    is_same: bool,
+    at: &Places<'_>,
+) -> Closest {
+    let facet = &other.facets[facet as usize];
+    let place = |corner: u32| at.point(&other.points, corner);
+    let (here, corners) = (at.point(&one.points, point), facet.corners.map(place));
+    let nearest = match facet.count {
+        3 => closest::of_triangle(here, corners),
+        2 => closest::of_segment(here, [corners[0], corners[1]]),
+        _ => closest::Nearest { shares: [1.0, 0.0, 0.0], on: On::Corner(0) },
+    };
+    let there: DVec3 = corners.iter().zip(nearest.shares).map(|(&corner, share)| corner * share).sum();
+    let way = here - there;
+    let counts = match nearest.on {
+        On::Inside => true,
+        On::Side(side) => {
+            let wings = &other.wings[facet.sides[side] as usize];
+            facet.owns_sides[side] && closest::leads_away(way, there, wings.iter().map(|&corner| place(corner)))
+        }
+        On::Corner(corner) => {
+            let number = facet.corners[corner] as usize;
+            let ring = || other.rings[number].iter().map(|&corner| place(corner));
+            let is_first = counts_corners && (!is_same || (point as usize) < number);
+            is_first && facet.owns_corners[corner] && closest::leads_away(way, there, ring())
+        }
+    };
+    let shares = [0, 1, 2].map(|corner| (facet.corners[corner], nearest.shares[corner]));
+    Closest { way, shares: [[(point, 1.0), (point, 0.0), (point, 0.0)], shares], counts }
+}
+
+/// Edges that cross each other. Two that are both flat do not count: points and facets meet there.
+fn edges([one, other]: [&Surface; 2], [first, second]: [u32; 2], at: &Places<'_>) -> Closest {
+    /// The least squared sine of the angle between them: parallel edges meet with their ends.
+    const LEAST_SINE: f64 = 1e-8;
+    let ends = [(one, first), (other, second)].map(|(surface, edge)| surface.edges[edge as usize]);
+    let [mine, theirs] =
+        [(one, ends[0]), (other, ends[1])].map(|(surface, ends)| ends.map(|end| at.point(&surface.points, end)));
+    let [s, t] = closest::of_segments(mine, theirs);
+    let (here, there) = (mine[0].lerp(mine[1], s), theirs[0].lerp(theirs[1], t));
+    let way = here - there;
+    let along = [mine[1] - mine[0], theirs[1] - theirs[0]];
+    let is_inside = |share: f64| share > 0.0 && share < 1.0;
+    let counts = is_inside(s)
+        && is_inside(t)
+        && along[0].cross(along[1]).length_squared()
+            > LEAST_SINE * along[0].length_squared() * along[1].length_squared()
+        && {
+            let wings = |surface: &Surface, edge: u32, from: DVec3, way: DVec3, along: DVec3| {
+                let around = surface.wings[edge as usize].iter().map(|&corner| at.point(&surface.points, corner));
+                (closest::leads_away(way, from, around.clone()), is_flat(along, from, around))
+            };
+            let (away, mine_flat) = wings(one, first, here, -way, along[0]);
+            away && {
+                let (away, theirs_flat) = wings(other, second, there, way, along[1]);
+                away && !(mine_flat && theirs_flat)
+            }
+        };
+    let share = |[a, b]: [u32; 2], share: f64| [(a, 1.0 - share), (b, share), (b, 0.0)];
+    Closest { way, shares: [share(ends[0], s), share(ends[1], t)], counts }
+}
+
+/// Whether the two triangles with an edge continue each other.
+fn is_flat(along: DVec3, from: DVec3, mut wings: impl Iterator<Item = DVec3>) -> bool {
+    /// The sine of the angle between them.
+    const BEND: f64 = 0.02;
+    let (Some(first), Some(second), None) = (wings.next(), wings.next(), wings.next()) else { return false };
+    let [one, other] = [first, second].map(|corner| (corner - from).cross(along));
+    one.dot(other) < 0.0 && one.cross(other).length() < BEND * one.length() * other.length()
+}
+
+/// Whether two features of a surface share no node and are at rest farther from each other than a distance (m).
+fn is_apart_at_rest(surface: &Surface, kind: Kind, [first, second]: [u32; 2], rest: &Places<'_>, far: f64) -> bool {
+    if kind == Kind::Edges && first >= second {
+        return false;
+    }
+    let nodes = |points: &[u32]| {
+        points.iter().flat_map(|&point| surface.points.of(point as usize).0).copied().collect::<Vec<_>>()
+    };
+    let (mine, theirs) = match kind {
+        Kind::Edges => (nodes(&surface.edges[first as usize]), nodes(&surface.edges[second as usize])),
+        _ => (nodes(&[first]), nodes(surface.facets[second as usize].used())),
+    };
+    let is_joined = mine.iter().any(|node| theirs.contains(node));
+    !is_joined && closest(kind, [surface; 2], true, [first, second], rest).way.length() > far
+}
+
+impl Facet {
+    /// The corners that count.
+    pub(super) fn used(&self) -> &[u32] {
+        &self.corners[..self.count as usize]
+    }
+}
+
+/// A box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Extent {
+    /// The box around all points of a surface.
+    pub(super) fn of(surface: &Surface, at: &Places<'_>) -> Self {
+        Self::around(surface.nodes.iter().map(|&node| at.node(node)))
+    }
+
+    fn at(point: DVec3) -> Self {
+        Self { low: point, high: point }
+    }
+
+    fn around(points: impl Iterator<Item = DVec3>) -> Self {
+        let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        points.fold(none, |Self { low, high }, point| Self { low: low.min(point), high: high.max(point) })
+    }
+
+    pub(super) fn grown(self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    fn common(&self, other: &Self) -> Self {
+        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+
+    /// The distance between two boxes (m).
+    pub(super) fn distance(&self, other: &Self) -> f64 {
+        (self.low - other.high).max(other.low - self.high).max(DVec3::ZERO).length()
+    }
+
+    pub(super) fn size(&self) -> DVec3 {
+        self.high - self.low
+    }
+
+    fn longest_axis(&self) -> usize {
+        let size = self.size();
+        (1..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
+    }
+
+    pub(super) fn begins(&self) -> f64 {
+        self.low.x
+    }
+
+    pub(super) fn ends(&self) -> f64 {
+        self.high.x
+    }
+}
+
+/// The features whose boxes meet a box.
+fn near(features: impl Iterator<Item = (u32, Extent)>, common: &Extent) -> Vec<(u32, Extent)> {
+    features.filter(|(_, extent)| extent.meets(common)).collect()
+}
+
+/// Calls `found` with the features whose boxes are nearer than a reach (m) along each axis, by a sweep along one.
+fn sweep([one, other]: [&Vec<(u32, Extent)>; 2], reach: f64, axis: usize, mut found: impl FnMut([u32; 2])) {
+    let mut sorted = other.clone();
+    sorted.sort_by(|a, b| a.1.low[axis].total_cmp(&b.1.low[axis]));
+    let widest = sorted.iter().map(|(_, extent)| extent.high[axis] - extent.low[axis]).fold(0.0, f64::max);
+    for (first, extent) in one {
+        let grown = extent.grown(reach);
+        let from = sorted.partition_point(|(_, other)| other.low[axis] < grown.low[axis] - widest);
+        let beside = sorted[from..].iter().take_while(|(_, other)| other.low[axis] <= grown.high[axis]);
+        beside.filter(|(_, other)| grown.meets(other)).for_each(|(second, _)| found([*first, *second]));
+    }
+}

@@ -1,0 +1,149 @@
+//! The rule of contact between surfaces: a closest pair of points at the start of a step gets an impulse at its end.
+//!
+//! The pair keeps its direction and its weights for the whole step. So its impulse acts along the line through both points, before
+//! and after it: without friction it has no torque. The velocity in the middle of the step, which semi-implicit Euler conserves the
+//! energy of, decides the rebound. Whatever approaches along the line cannot pass within one step, however fast it is.
+//!
+//! Impulses that are distributed over nodes by weights: F. Cirak and M. West, Int. J. Numer. Meth. Engng 64, 1078 (2005).
+
+use glam::{DMat3, DVec3};
+
+/// How two surfaces meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Law {
+    /// The distance that is kept (m).
+    pub(super) gap: f64,
+    /// Restitution coefficient `e`.
+    pub(super) restitution: f64,
+    /// Friction coefficient `μ`.
+    pub(super) friction: f64,
+}
+
+/// A node of a pair of closest points, with its weight: positive on the first surface, negative on the second.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Term {
+    pub(super) node: u32,
+    pub(super) weight: f64,
+}
+
+/// A pair of closest points at the start of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) law: Law,
+    /// Unit vector from the point on the second surface to that on the first.
+    pub(super) normal: DVec3,
+    /// Their distance at the start of the step (m).
+    pub(super) distance: f64,
+    /// `Σ c²/m` (1/kg).
+    pub(super) mobility: f64,
+    /// What has to be added to their speed (m/s) for the one that decides the rebound.
+    pub(super) to_rebound: f64,
+    /// What has to be added to their speed (m/s) for the mean one in the step.
+    pub(super) to_path: f64,
+    /// Where its terms begin and end.
+    pub(super) terms: [u32; 2],
+}
+
+/// Where nodes are when a stage of contact changes them.
+pub(super) struct Moved<'a> {
+    /// 1/m of each node (1/kg), zero for those that are held.
+    pub(super) inverse_mass: &'a [f64],
+    pub(super) position: &'a mut [DVec3],
+    pub(super) velocity: &'a mut [DVec3],
+    /// Positions (m) and velocities (m/s) of the points of obstacles, whose numbers follow those of nodes.
+    pub(super) obstacles: [&'a [DVec3]; 2],
+    /// ΔT (s).
+    pub(super) step: f64,
+    /// Whether positions at the end of the step are those at its start plus the new velocities times ΔT, as angular momentum
+    /// is then known.
+    pub(super) is_euler: bool,
+}
+
+impl Moved<'_> {
+    fn place(&self, node: u32) -> DVec3 {
+        let node = node as usize;
+        self.position.get(node).copied().unwrap_or_else(|| self.obstacles[0][node - self.position.len()])
+    }
+
+    fn speed(&self, node: u32) -> DVec3 {
+        let node = node as usize;
+        self.velocity.get(node).copied().unwrap_or_else(|| self.obstacles[1][node - self.velocity.len()])
+    }
+
+    fn mobility(&self, node: u32) -> f64 {
+        self.inverse_mass.get(node as usize).copied().unwrap_or(0.0)
+    }
+
+    /// Gives a pair its impulse, and returns it (N s): that on the first surface.
+    pub(super) fn resolve(&mut self, touch: &Touch, terms: &[Term]) -> DVec3 {
+        let Touch { law: Law { gap, restitution, friction }, normal, distance, .. } = *touch;
+        let sum = |of: &dyn Fn(u32) -> DVec3| terms.iter().map(|term| of(term.node) * term.weight).sum::<DVec3>();
+        let reached = normal.dot(sum(&|node| self.place(node)));
+        if reached >= gap {
+            return DVec3::ZERO;
+        }
+        let relative = sum(&|node| self.speed(node));
+        let along = normal.dot(relative);
+        // The speed that leaves the pair as near as it may come, and the one that throws it back.
+        let apart = (gap.min(distance) - distance) / self.step - (along + touch.to_path);
+        let back = -(1.0 + restitution) * (along + touch.to_rebound);
+        let kick = apart.max(back).max(0.0);
+        let slip = relative - normal * along;
+        let slip_speed = slip.length();
+        let hold = if slip_speed > 0.0 { (friction * kick / slip_speed).min(1.0) } else { 0.0 };
+        let impulse = (normal * kick - slip * hold) / touch.mobility;
+        let out = normal * ((gap - reached - self.step * kick).max(0.0) / touch.mobility);
+        let torque = if self.is_euler { self.torque(terms, impulse, out) } else { DVec3::ZERO };
+        for &Term { node, weight } in terms {
+            let share = weight * self.mobility(node);
+            if share != 0.0 {
+                self.velocity[node as usize] += impulse * share;
+                self.position[node as usize] += (impulse * self.step + out) * share;
+            }
+        }
+        if torque != DVec3::ZERO {
+            self.turn_back(terms, torque);
+        }
+        impulse
+    }
+
+    /// The change of angular momentum (kg m²/s) by an impulse and a push `out` (kg m) at the end of a step: `Σ m x × v` after both
+    /// minus that before; zero where a node is held.
+    fn torque(&self, terms: &[Term], impulse: DVec3, out: DVec3) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for &Term { node, weight } in terms {
+            let mobility = self.mobility(node);
+            if mobility == 0.0 {
+                return DVec3::ZERO;
+            }
+            let (place, speed) = (self.place(node), self.speed(node));
+            let after = speed + impulse * (weight * mobility);
+            sum += ((place - speed * self.step).cross(impulse) + out.cross(after)) * weight;
+        }
+        sum
+    }
+
+    /// Turns the nodes of a pair so that they lose an angular momentum (kg m²/s), unless they lie too near one line for it.
+    fn turn_back(&mut self, terms: &[Term], torque: DVec3) {
+        /// The least determinant of an inertia tensor, relative to that of a ball with the same trace.
+        const ROUND: f64 = 0.01;
+        let masses = || terms.iter().map(|&Term { node, .. }| (node, self.mobility(node).recip()));
+        let whole: f64 = masses().map(|(_, mass)| mass).sum();
+        let centre = masses().map(|(node, mass)| self.place(node) * mass).sum::<DVec3>() / whole;
+        let mut inertia = DMat3::ZERO;
+        for (node, mass) in masses() {
+            let arm = self.place(node) - centre;
+            let outer = DMat3::from_cols(arm * arm.x, arm * arm.y, arm * arm.z);
+            inertia += (DMat3::from_diagonal(DVec3::splat(arm.length_squared())) - outer) * mass;
+        }
+        let mean = (inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z) / 3.0;
+        if inertia.determinant() <= ROUND * mean * mean * mean {
+            return;
+        }
+        let spin = inertia.inverse() * torque;
+        for &Term { node, .. } in terms {
+            let arm = self.place(node) - centre;
+            self.velocity[node as usize] -= spin.cross(arm);
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
+
+use super::pair::{Extent, Pair, Places, Seen, Touches};
+use super::rule::{Law, Moved};
+use super::surface::Surface;
+use super::{Contacts, Obstacle, Side};
+use crate::motion::Interval;
+use crate::part::Part;
+use crate::state::Nodes;
+use glam::DVec3;
+use std::sync::{Mutex, PoisonError};
+
+/// The surfaces of a world, and what is known of their places. What is known only saves work: it changes no bit of what a step does.
+#[derive(Debug)]
+pub(crate) struct Stage {
+    contacts: Contacts,
+    /// Of the bodies, then of obstacles with an extent.
+    surfaces: Vec<Surface>,
+    bodies: usize,
+    obstacles: Vec<Solid>,
+    /// Positions of all nodes at rest (m).
+    rest: Vec<DVec3>,
+    inverse_mass: Vec<f64>,
+    known: Mutex<Known>,
+}
+
+/// An obstacle with an extent, and its points at the start (m).
+#[derive(Clone, Debug)]
+struct Solid {
+    /// Its number among all obstacles.
+    number: usize,
+    obstacle: Obstacle,
+    points: Vec<DVec3>,
+}
+
+/// What is known of the last step.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    /// Positions at the start of the last step, of nodes and of points of obstacles (m); empty if nothing is known.
+    last: Vec<DVec3>,
+    /// Points of obstacles at the start and at the end of the step, and their velocities.
+    obstacles: [Vec<DVec3>; 3],
+    /// How far each surface has moved since the last step, and in this one.
+    moved: [Vec<Way>; 2],
+    pairs: Vec<Pair>,
+    /// The way (m) of any two surfaces until others than the pairs may meet.
+    left: f64,
+    touches: Touches,
+    inverse_mass: Vec<f64>,
+}
+
+/// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
+#[derive(Clone, Copy, Debug, Default)]
+struct Way {
+    drift: DVec3,
+    spread: f64,
+}
+
+impl Way {
+    fn relative(self, other: Self) -> f64 {
+        (self.drift - other.drift).length() + self.spread + other.spread
+    }
+
+    fn length(self) -> f64 {
+        self.drift.length() + self.spread
+    }
+}
+
+impl Clone for Stage {
+    fn clone(&self) -> Self {
+        let Self { contacts, surfaces, bodies, obstacles, rest, inverse_mass, .. } = self;
+        Self {
+            contacts: contacts.clone(),
+            surfaces: surfaces.clone(),
+            bodies: *bodies,
+            obstacles: obstacles.clone(),
+            rest: rest.clone(),
+            inverse_mass: inverse_mass.clone(),
+            known: Mutex::default(),
+        }
+    }
+}
+
+/// The end of a step, as contact sees and changes it.
+pub(crate) struct End<'a> {
+    pub(crate) interval: Interval,
+    /// At the start of the step.
+    pub(crate) before: Nodes<'a>,
+    pub(crate) position: &'a mut [DVec3],
+    pub(crate) velocity: &'a mut [DVec3],
+    /// Whether nodes moved with their velocities at the end, as by semi-implicit Euler.
+    pub(crate) is_euler: bool,
+}
+
+impl Stage {
+    /// The surfaces of bodies and obstacles; `None` if no two of them can meet.
+    pub(crate) fn new(contacts: &Contacts, parts: &[Part], obstacles: &[Obstacle]) -> Option<Self> {
+        /// The distance that two bodies of equal cells keep, as a share of a cell.
+        const GAP: f64 = 0.05;
+        let dimension = parts.first()?.body.dimension;
+        let rest: Vec<DVec3> = parts.iter().flat_map(|part| part.body.rest.iter().copied()).collect();
+        let inverse_mass = parts.iter().flat_map(|part| part.body.mass.iter().map(|mass| mass.recip())).collect();
+        let places = Places { nodes: &rest, obstacles: &[] };
+        let mut surfaces = Vec::new();
+        for part in parts {
+            let mut surface = Surface::of(&part.body, part.nodes.start as u32);
+            let cell = surface.cell(|point| places.point(&surface.points, point));
+            let own = contacts.bodies.get(part.number).and_then(|body| body.thickness);
+            surface.thickness = own.unwrap_or(0.5 * GAP * cell);
+            surfaces.push(surface);
+        }
+        let bodies = surfaces.len();
+        let mut solids = Vec::new();
+        let mut first = rest.len() as u32;
+        for (number, obstacle) in obstacles.iter().enumerate() {
+            let Some((surface, points)) = obstacle.shape.surface_of(dimension, first) else { continue };
+            first += points.len() as u32;
+            surfaces.push(surface);
+            solids.push(Solid { number, obstacle: obstacle.clone(), points });
+        }
+        let meets_itself = contacts.bodies.iter().any(|body| body.itself);
+        let stage = Self {
+            contacts: contacts.clone(),
+            surfaces,
+            bodies,
+            obstacles: solids,
+            rest,
+            inverse_mass,
+            known: Mutex::default(),
+        };
+        (meets_itself || stage.surfaces.len() > 1).then_some(stage)
+    }
+
+    /// How two surfaces meet; `None` if they do not.
+    fn law(&self, one: usize, other: usize) -> Option<Law> {
+        let side = |surface: usize| match surface.checked_sub(self.bodies) {
+            None => Side::Body(surface),
+            Some(solid) => Side::Obstacle(self.obstacles[solid].number),
+        };
+        if one >= self.bodies || one == other && !self.contacts.bodies.get(one).is_some_and(|body| body.itself) {
+            return None;
+        }
+        let Contacts { restitution, friction, pairs, .. } = &self.contacts;
+        let solid = other.checked_sub(self.bodies).map(|solid| &self.obstacles[solid].obstacle);
+        let gap = self.surfaces[one].thickness + self.surfaces[other].thickness;
+        let usual = solid.map_or([*restitution, *friction], |solid| [solid.restitution, solid.friction]);
+        let own = pairs.iter().find(|pair| {
+            let [a, b] = pair.of;
+            [a, b] == [side(one), side(other)] || [b, a] == [side(one), side(other)]
+        });
+        let law = Law { gap, restitution: usual[0], friction: usual[1] };
+        Some(own.map_or(law, |own| Law {
+            restitution: own.restitution.unwrap_or(law.restitution),
+            friction: own.friction.unwrap_or(law.friction),
+            gap: own.thickness.map_or(law.gap, |gap| gap + solid.map_or(0.0, |_| self.surfaces[other].thickness)),
+        }))
+    }
+
+    /// Forgets where everything was.
+    pub(crate) fn forget(&mut self) {
+        *self.known.get_mut().unwrap_or_else(PoisonError::into_inner) = Known::default();
+    }
+
+    /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, which stay as they are.
+    pub(crate) fn resolve(&self, end: End<'_>, held: impl Iterator<Item = usize>) {
+        let End { interval, before, position, velocity, is_euler } = end;
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = &mut *known;
+        self.place_obstacles(interval, &mut known.obstacles);
+        known.inverse_mass.clone_from(&self.inverse_mass);
+        held.for_each(|node| known.inverse_mass[node] = 0.0);
+        let [start, moved, speed] = &known.obstacles;
+        let start = Places { nodes: before.position, obstacles: start };
+        let ended = Places { nodes: position, obstacles: moved };
+        let is_new = known.last.is_empty();
+        if is_new {
+            known.pairs.clear();
+            known.left = f64::NEG_INFINITY;
+        } else {
+            let (nodes, obstacles) = known.last.split_at(position.len());
+            self.ways(&Places { nodes, obstacles }, &start, &mut known.moved[0]);
+        }
+        known.last.clear();
+        known.last.extend(before.position.iter().chain(start.obstacles));
+        self.ways(&start, &ended, &mut known.moved[1]);
+        if is_new {
+            known.moved[0] = vec![Way::default(); self.surfaces.len()];
+        }
+        let longest = |ways: &[Way]| ways.iter().fold(0.0, |most: f64, way| most.max(way.length()));
+        let [since, ahead] = [0, 1].map(|at| longest(&known.moved[at]));
+        known.left -= 2.0 * since;
+        if !(known.left >= 4.0 * ahead) {
+            known.left = self.choose(&start, ahead, &mut known.pairs);
+        }
+        let seen = Seen {
+            surfaces: &self.surfaces,
+            rest: Places { nodes: &self.rest, obstacles: &[] },
+            start,
+            end: ended,
+            velocity: [before.velocity, velocity].map(|nodes| Places { nodes, obstacles: speed }),
+            inverse_mass: &known.inverse_mass,
+            is_euler,
+        };
+        known.touches.clear();
+        for pair in &mut known.pairs {
+            let [way, ahead] = [0, 1].map(|at| {
+                let [one, other] = pair.of.map(|surface| known.moved[at][surface]);
+                one.relative(other)
+            });
+            pair.go(&seen, way, ahead);
+            pair.look(&seen, ahead, &mut known.touches);
+        }
+        let Touches { of_points, of_edges, terms } = &known.touches;
+        let obstacles = [&moved[..], &speed[..]];
+        let inverse_mass = &known.inverse_mass[..];
+        let mut nodes = Moved { inverse_mass, position, velocity, obstacles, step: interval.step, is_euler };
+        for touch in of_points.iter().chain(of_edges) {
+            let [first, last] = touch.terms.map(|at| at as usize);
+            nodes.resolve(touch, &terms[first..last]);
+        }
+    }
+
+    /// Writes where the points of obstacles are at the start and at the end of a step, and their velocities in it.
+    fn place_obstacles(&self, interval: Interval, [start, end, speed]: &mut [Vec<DVec3>; 3]) {
+        [&mut *start, &mut *end, &mut *speed].into_iter().for_each(Vec::clear);
+        for Solid { obstacle, points, .. } in &self.obstacles {
+            let [from, to] = [interval.begin, interval.end].map(|time| obstacle.pose(time));
+            for &point in points {
+                let [before, after] = [from, to].map(|pose| pose.apply(obstacle.pivot, point));
+                start.push(before);
+                end.push(after);
+                speed.push((after - before) / interval.step);
+            }
+        }
+    }
+
+    /// How far the points of each surface move from places to others.
+    fn ways(&self, from: &Places<'_>, to: &Places<'_>, ways: &mut Vec<Way>) {
+        ways.clear();
+        ways.extend(self.surfaces.iter().map(|surface| {
+            let by = |node: u32| to.node(node) - from.node(node);
+            // Any vector will do: the nearer it is to the mean, the less is left.
+            let some = surface.nodes.iter().step_by(surface.nodes.len().div_ceil(8).max(1));
+            let count = some.len().max(1) as f64;
+            let drift = some.map(|&node| by(node)).sum::<DVec3>() / count;
+            let spread = |most: f64, &node: &u32| most.max(by(node).distance_squared(drift));
+            Way { drift, spread: surface.nodes.iter().fold(0.0, spread).sqrt() }
+        }));
+    }
+
+    /// Chooses the pairs of surfaces that are near each other, and returns the way (m) of any two until others may meet.
+    fn choose(&self, at: &Places<'_>, ahead: f64, pairs: &mut Vec<Pair>) -> f64 {
+        let extents: Vec<_> = self.surfaces.iter().map(|surface| Extent::of(surface, at)).collect();
+        let bodies = &extents[..self.bodies];
+        let size = bodies.iter().map(|extent| extent.size().max_element()).sum::<f64>() / self.bodies as f64;
+        let margin = (0.1 * size).max(16.0 * ahead);
+        let thickest = self.surfaces.iter().fold(0.0, |most: f64, surface| most.max(surface.thickness));
+        let reach = margin + 2.0 * thickest;
+        let mut order: Vec<usize> = (0..extents.len()).collect();
+        order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
+        let mut chosen = Vec::new();
+        for (at, &one) in order.iter().enumerate() {
+            if one < self.bodies {
+                chosen.push([one, one]);
+            }
+            let end = extents[one].ends() + reach;
+            let beside = order[at + 1..].iter().take_while(|&&other| extents[other].begins() <= end);
+            let near = beside.filter(|&&other| extents[one].distance(&extents[other]) <= reach);
+            chosen.extend(near.map(|&other| [one.min(other), one.max(other)]));
+        }
+        chosen.sort_unstable();
+        let mut old = std::mem::take(pairs).into_iter().peekable();
+        for of in chosen {
+            while old.next_if(|pair| pair.of < of).is_some() {}
+            match old.next_if(|pair| pair.of == of) {
+                Some(pair) => pairs.push(pair),
+                None => pairs.extend(self.law(of[0], of[1]).map(|law| Pair::new(of, law))),
+            }
+        }
+        margin
+    }
+
+    /// How many steps of ΔT (s), at most `most`, bodies can take alone, and the speed (m/s) up to which they can: above it they might
+    /// meet. `None` if they may meet in the next step.
+    pub(crate) fn alone(&self, at: Nodes<'_>, interval: Interval, most: u64) -> Option<(u64, f64)> {
+        /// A node moves at most so many times as far as its speed says: it may be thrown back by an obstacle.
+        const THROWN: f64 = 3.0;
+        if self.contacts.bodies.iter().any(|body| body.itself) {
+            return None;
+        }
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        self.place_obstacles(interval, &mut known.obstacles);
+        let places = Places { nodes: at.position, obstacles: &known.obstacles[0] };
+        let extents: Vec<_> = self.surfaces.iter().map(|surface| Extent::of(surface, &places)).collect();
+        let fastest = at.velocity.iter().fold(0.0, |most: f64, speed| most.max(speed.length_squared())).sqrt();
+        let speeds: Vec<f64> = self.obstacles.iter().map(|solid| solid.greatest_speed()).collect();
+        let mut speed = f64::INFINITY;
+        for one in 0..self.bodies {
+            for other in one + 1..extents.len() {
+                let Some(Law { gap, .. }) = self.law(one, other) else { continue };
+                let own = other.checked_sub(self.bodies).map_or(0.0, |solid| speeds[solid]);
+                let way = (extents[one].distance(&extents[other]) - gap) / (most as f64 * interval.step);
+                speed = speed.min((way - own) / (2.0 * THROWN));
+            }
+        }
+        (speed > 1.1 * fastest).then_some((most, speed))
+    }
+}
+
+impl Solid {
+    /// The greatest speed of its points (m/s).
+    fn greatest_speed(&self) -> f64 {
+        let far = self.points.iter().fold(0.0, |most: f64, point| most.max(point.distance(self.obstacle.pivot)));
+        self.obstacle.motion.greatest_speed(far)
+    }
+}
