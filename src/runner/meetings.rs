@@ -1,4 +1,4 @@
-//! From which step on bodies go through each other: nothing keeps them apart.
+//! From which step on bodies go through each other, where contact of surfaces does not keep them apart.
 
 use crate::reading::words::short;
 use crate::scene::Scene;
@@ -30,7 +30,7 @@ impl Watch {
         let run = &scene.runs[run];
         let bodies = run.of.len();
         // What recorded bodies do is not known here.
-        if bodies < 2 || run.recording.is_some() {
+        if bodies < 2 || run.recording.is_some() || scene.contacts.is_some() {
             return None;
         }
         let known: BTreeSet<_> = overlaps(&run.bodies, &run.initial.position, |_| true).collect();

@@ -406,6 +406,7 @@ impl Scene {
         let surroundings = Surroundings {
             gravity: self.gravity,
             obstacles: self.obstacles.clone(),
+            contacts: self.contacts.as_ref().map(|contacts| run.contacts(contacts)),
             grips: run.grips.clone(),
             ..Surroundings::default()
         };

@@ -1,6 +1,6 @@
 //! The digest of a scene's meaning.
 
-use super::file::{BodyFile, Coordinates, Positive, SceneFile};
+use super::file::{BodyFile, ContactRule, Coordinates, Positive, SceneFile};
 use super::schema::{SCHEMA, by_name, variants, without_nulls};
 use crate::look::print::SizeFile;
 use crate::sim::FrictionOf;
@@ -46,6 +46,7 @@ pub(super) fn digest(typed: &SceneFile, files: FileDigests) -> String {
     }
     without_nulls(&mut value);
     with_friction(&mut value);
+    with_contact(&mut value);
     without_defaults(&mut value, &SCHEMA);
     // Tables in which only defaults were typed.
     let is_empty = |value: &Value| *value == json!({});
@@ -133,6 +134,23 @@ fn with_friction(value: &mut Value) {
                 obstacle.insert("friction_of".to_owned(), of);
             }
         }
+    }
+}
+
+/// Names contact of surfaces where some can meet. Nodes alone met obstacles at first, which stays without a name, as above.
+fn with_contact(value: &mut Value) {
+    let is_of_nodes = value["contact"]["rule"] == json!(ContactRule::Nodes);
+    let has_extent = |obstacle: &Value| !["floor", "plate"].contains(&obstacle["kind"].as_str().unwrap_or_default());
+    let bodies = value["body"].as_array().map_or(1, Vec::len);
+    let meets_itself = |body: &Value| body["self_contact"] == true;
+    let can_meet = bodies > 1
+        || value["obstacle"].as_array().is_some_and(|obstacles| obstacles.iter().any(has_extent))
+        || meets_itself(&value["body"])
+        || value["body"].as_array().is_some_and(|bodies| bodies.iter().any(meets_itself));
+    if is_of_nodes || !can_meet {
+        value.as_object_mut().map(|scene| scene.remove("contact"));
+    } else {
+        value["contact"]["rule"] = json!(ContactRule::Surfaces);
     }
 }
 

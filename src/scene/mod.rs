@@ -38,7 +38,7 @@ mod turning;
 
 pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};
-pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, RunBuilder, SceneBuilder};
+pub use builder::{BodyBuilder, ContactBuilder, NodeSet, ObstacleBuilder, PairBuilder, RunBuilder, SceneBuilder};
 pub use error::SceneError;
 pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing, Up};
 pub use limits::Limits;
@@ -54,7 +54,7 @@ pub(crate) use turning::brakes_rotation;
 
 use crate::look::{Subject, SubjectBody, SubjectRun, View};
 use crate::reading::words::{list, nearest, quoted};
-use crate::sim::{Body, Dimension, Moment, Obstacle, State};
+use crate::sim::{Body, Contacts, Dimension, Moment, Obstacle, State};
 use glam::DVec3;
 use localshape_mesh::Group;
 #[cfg(feature = "render")]
@@ -88,6 +88,8 @@ pub struct Scene {
     pub runs: Vec<Run>,
     /// The obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
+    /// How surfaces meet, with bodies counted as in the scene; `None` if nodes meet obstacles and nothing else meets.
+    pub contacts: Option<Contacts>,
     /// The view.
     pub view: View,
     /// Warnings: allowed, but probably mistakes.

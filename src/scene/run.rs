@@ -3,7 +3,7 @@
 use super::{Recorded, Scene, SceneBody};
 use crate::colour::Colour;
 use crate::sim::model::ElasticModel;
-use crate::sim::{Assembly, Body, Grip, Integrator, Kernel, State};
+use crate::sim::{Assembly, Body, Contacts, Grip, Integrator, Kernel, PairContact, Side, State};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -65,6 +65,20 @@ impl Run {
     /// Each model with its body at rest.
     pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
         self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
+    }
+
+    /// Contact of its bodies, counted from its first one, from that of the bodies of the scene.
+    pub(crate) fn contacts(&self, of_scene: &Contacts) -> Contacts {
+        let own = |side: Side| match side {
+            Side::Body(body) => Some(Side::Body(self.of.iter().position(|&of| of == body)?)),
+            Side::Obstacle(_) => Some(side),
+        };
+        let pair = |pair: &PairContact| Some(PairContact { of: [own(pair.of[0])?, own(pair.of[1])?], ..*pair });
+        Contacts {
+            bodies: self.of.iter().map(|&body| of_scene.bodies.get(body).copied().unwrap_or_default()).collect(),
+            pairs: of_scene.pairs.iter().filter_map(pair).collect(),
+            ..*of_scene
+        }
     }
 
     /// The shortest period of a node of any of its bodies (s).

@@ -86,6 +86,10 @@ impl BodyBuilder {
         name(name: impl Into<String>) 0.name = Some(name.into());
         /// Reads elements in space as the convex hulls of their nodes, in any order.
         convex() 0.convex = true;
+        /// Lets its surface meet itself, so that it cannot be folded through itself.
+        self_contact() 0.self_contact = true;
+        /// The distance that its surface keeps from an obstacle, and half of that between two such bodies (m).
+        thickness(distance: f64) 0.thickness = Some(distance);
         /// Springs as pairs of nodes, for mass-spring models without a named topology. Only with [`Self::arrays`].
         springs(springs: impl IntoIterator<Item = [u32; 2]>) 0.springs = all(springs);
         /// Faces to draw instead of those of the elements, counter-clockwise from outside. Only with [`Self::arrays`].

@@ -13,11 +13,13 @@ macro_rules! setters {
 }
 
 mod body;
+mod contact;
 mod nodes;
 mod obstacle;
 mod run;
 
 pub use body::BodyBuilder;
+pub use contact::{ContactBuilder, PairBuilder};
 pub use nodes::NodeSet;
 pub use obstacle::ObstacleBuilder;
 pub use run::RunBuilder;
@@ -92,6 +94,7 @@ impl Scene {
             body: vec![Some(body.0)],
             run: Vec::new(),
             obstacle: Vec::new(),
+            contact: None,
             hold: Vec::new(),
             grab: Vec::new(),
             view: TypedView::default(),
@@ -138,6 +141,12 @@ impl SceneBuilder {
     /// Adds an obstacle. Obstacles act in the order in which they are added.
     pub fn obstacle(mut self, obstacle: ObstacleBuilder) -> Self {
         self.file.obstacle.push(Some(obstacle.0));
+        self
+    }
+
+    /// Says how the surfaces of bodies meet.
+    pub fn contact(mut self, contact: ContactBuilder) -> Self {
+        self.file.contact = Some(contact.0);
         self
     }
 

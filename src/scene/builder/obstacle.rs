@@ -3,15 +3,15 @@
 use crate::scene::file::{Coordinates, KeyFile, MotionPath, ObstacleFile, Rotation, ShapeFile, Swing};
 use crate::sim::{Ease, FrictionOf};
 
-/// Builds a rigid obstacle that nodes collide with. It is fixed unless a path or a swing moves it.
+/// Builds a rigid obstacle that bodies collide with. It is fixed unless a path or a swing moves it.
 #[derive(Clone, Debug)]
 #[must_use = "a builder makes nothing until its scene is built"]
 pub struct ObstacleBuilder(pub(super) ObstacleFile);
 
 impl ObstacleBuilder {
     fn new(shape: ShapeFile) -> Self {
-        let (about, path, swing) = (None, None, None);
-        Self(ObstacleFile { shape, restitution: 0.0, friction: 0.0, friction_of: None, about, path, swing })
+        let (name, about, path, swing) = (None, None, None, None);
+        Self(ObstacleFile { shape, name, restitution: 0.0, friction: 0.0, friction_of: None, about, path, swing })
     }
 
     /// A level floor at a height (m).
@@ -50,6 +50,8 @@ impl ObstacleBuilder {
     }
 
     setters! {
+        /// The name, which pairs of a [`ContactBuilder`](super::ContactBuilder) use. No body has it.
+        name(name: impl Into<String>) 0.name = Some(name.into());
         /// Coefficient of restitution e, 0 to 1: the part of the normal velocity that a rebound keeps.
         restitution(coefficient: f64) 0.restitution = coefficient;
         /// Coefficient of friction μ.

@@ -127,6 +127,13 @@ pub(in crate::scene) struct BodyFile {
     /// wedges and hexahedra.
     #[serde(default)]
     pub(in crate::scene) convex: bool,
+    /// Whether its surface meets itself, so that it cannot be folded through itself.
+    #[serde(default)]
+    pub(in crate::scene) self_contact: bool,
+    /// The distance that its surface keeps from an obstacle, and half of that between two such bodies (m), at most a cell. Default: the
+    /// fortieth part of the mean length of the edges of its surface.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) thickness: Option<f64>,
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,

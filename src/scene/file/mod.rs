@@ -5,6 +5,7 @@
 //! in space and two in the plane.
 
 mod body;
+mod contact;
 mod motion;
 mod obstacle;
 mod run;
@@ -14,6 +15,7 @@ pub(in crate::scene) use body::{
     BarsFile, BodyFile, DiscFile, FillFile, FillKind, LISTS, PolygonFile, SideFile, SpinFile,
 };
 pub use body::{Cells, Lattice, Rotation, Start, StartShape, Up};
+pub(in crate::scene) use contact::{ContactFile, ContactRule, PairFile};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
@@ -47,18 +49,20 @@ pub(in crate::scene) struct SceneFile {
     /// Duration, time step and frame rate.
     #[schemars(with = "TimeFile")]
     pub(in crate::scene) time: Option<TimeFile>,
-    /// The body, or several as `[[body]]`, each with a `name`. Several bodies are all in the plane or all in space. They go
-    /// through each other. Their order is the order of rows in result files.
+    /// The body, or several as `[[body]]`, each with a `name`. Several bodies are all in the plane or all in space. Their order is the order of rows in result files.
     #[serde(serialize_with = "body::written")]
     #[schemars(schema_with = "body::one_or_several")]
     pub(in crate::scene) body: Vec<Option<BodyFile>>,
     /// The runs, with one panel of the picture each.
     #[schemars(with = "Vec<RunFile>", length(min = 1, max = 256))]
     pub(in crate::scene) run: Vec<Option<RunFile>>,
-    /// Obstacles that nodes collide with, in the order in which they act. Default: none.
+    /// Obstacles that bodies collide with, in the order in which they act. Default: none.
     #[serde(default)]
     #[schemars(with = "Vec<ObstacleFile>")]
     pub(in crate::scene) obstacle: Vec<Option<ObstacleFile>>,
+    /// How the surfaces of bodies meet. Default: as an empty table.
+    #[schemars(with = "ContactFile")]
+    pub(in crate::scene) contact: Option<ContactFile>,
     /// Nodes that are held in place. Default: none.
     #[serde(default)]
     #[schemars(with = "Vec<HoldFile>")]
@@ -88,10 +92,16 @@ impl SceneFile {
             body,
             run: entries(parts, "run", report),
             obstacle: entries(parts, "obstacle", report),
+            contact: part(parts, "contact", report),
             hold: entries(parts, "hold", report),
             grab: entries(parts, "grab", report),
             view: part(parts, "view", report).unwrap_or_default(),
         }
+    }
+
+    /// Whether nodes alone meet obstacles, and nothing else meets.
+    pub(in crate::scene) fn meets_by_nodes(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.rule == Some(ContactRule::Nodes))
     }
 
     /// Leaves out the parts in which a check of this scene found mistakes.
@@ -106,6 +116,7 @@ impl SceneFile {
             }
         }
         drop(slice::from_mut(&mut self.time), "time", checked);
+        drop(slice::from_mut(&mut self.contact), "contact", checked);
         drop(&mut self.body, "body", checked);
         drop(&mut self.run, "run", checked);
         drop(&mut self.obstacle, "obstacle", checked);

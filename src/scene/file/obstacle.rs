@@ -5,12 +5,16 @@ use crate::sim::FrictionOf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rigid obstacle that nodes collide with. It is fixed unless a `path` or a `swing` moves it.
+/// A rigid obstacle that bodies collide with. It is fixed unless a `path` or a `swing` moves it.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("not" = { "required": ["path", "swing"] }))]
 pub(in crate::scene) struct ObstacleFile {
     #[serde(flatten)]
     pub(in crate::scene) shape: ShapeFile,
+    /// Unique name, which `contact.pair` uses. No body has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 80))]
+    pub(in crate::scene) name: Option<String>,
     /// Coefficient of restitution e: the part of the normal velocity that a rebound keeps.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]

@@ -15,7 +15,9 @@ pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>)
     warn_of_unused(scene, typed, report);
     warn_of_time(scene, report);
     warn_of_steps(scene, report);
-    warn_of_overlaps(scene, typed, report);
+    if scene.contacts.is_none() {
+        warn_of_overlaps(scene, typed, report);
+    }
     warn_of_braked_rotation(scene, report);
     warn_of_sizes(scene, typed, report);
     if let Some((run, [message, help])) = scene.too_soft() {

@@ -4,6 +4,7 @@
 mod archive;
 mod body;
 mod choice;
+mod contact;
 mod disorder;
 mod doubts;
 mod elements;
@@ -27,7 +28,7 @@ use crate::look::{self, FontFiles, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted};
-use crate::sim::{Dimension, Obstacle};
+use crate::sim::{Contacts, Dimension, Obstacle};
 use body::TypedBody;
 use choice::Choice;
 use glam::DVec3;
@@ -63,6 +64,8 @@ struct Physics {
     /// The bodies, and after them the own bodies of recordings.
     bodies: Option<Vec<SceneBody>>,
     obstacles: Option<Vec<Obstacle>>,
+    /// `None` also for contact of nodes.
+    contacts: Option<Contacts>,
     runs: Option<Vec<Run>>,
     /// Digests of the files of bodies and runs.
     files: FileDigests,
@@ -107,11 +110,15 @@ impl<'a> Typed<'a> {
             bodies: physics.bodies?,
             runs: physics.runs?,
             obstacles: physics.obstacles?,
+            contacts: physics.contacts,
             view: view?,
             warnings: Vec::new(),
         };
         scene.place_runs();
         Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
+        if scene.contacts.is_some() {
+            contact::check_starts(&scene, self, report);
+        }
         doubts::warn(&scene, self, report);
         Some(Scene { warnings: report.warnings(), ..scene })
     }
@@ -142,9 +149,11 @@ impl<'a> Typed<'a> {
         };
         // Where bodies start is not known without all of their keys.
         let sound: Vec<_> = bodies.iter().flatten().filter(|_| !flawed.contains("body")).collect();
-        let obstacles = obstacles::resolve(&file.obstacle, dimension, &sound, report);
+        contact::check_obstacle_names(self, report);
+        let obstacles = obstacles::resolve(file, dimension, &sound, report);
         let bodies: Option<Vec<_>> = bodies.into_iter().collect();
         let mut bodies = bodies.filter(|bodies| bodies.iter().all(|body| Some(body.body.dimension()) == dimension));
+        let contacts = bodies.as_ref().and_then(|bodies| contact::resolve(self, bodies, report));
         let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&file.hold, &file.grab, bodies, report));
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);
@@ -156,7 +165,7 @@ impl<'a> Typed<'a> {
         });
         let (runs, own) = runs.unzip();
         bodies.iter_mut().zip(own).for_each(|(bodies, own)| bodies.extend(own));
-        Physics { gravity, bodies, obstacles, runs, files }
+        Physics { gravity, bodies, obstacles, contacts, runs, files }
     }
 
     /// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.

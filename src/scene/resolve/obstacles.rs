@@ -1,29 +1,31 @@
 //! Obstacles.
 
+use super::contact::CLEARANCE;
 use super::motion::{self, axis};
 use super::{direction, vector};
 use crate::reading::captions::{quantity, rounded};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::scene::SceneBody;
-use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
+use crate::scene::file::{Coordinates, ObstacleFile, SceneFile, ShapeFile};
 use crate::sim::geometry::{bounds, is_inside};
 use crate::sim::{Dimension, Motion, Obstacle, Shape};
 use glam::{DQuat, DVec3};
 
 /// The obstacles, or `None` after reporting every mistake in them.
 pub(super) fn resolve(
-    typed: &[Option<ObstacleFile>],
+    file: &SceneFile,
     dimension: Option<Dimension>,
     bodies: &[&SceneBody],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Obstacle>> {
     let dimension = dimension?;
+    let (typed, is_by_nodes) = (&file.obstacle, file.meets_by_nodes());
     let mut obstacles = Vec::new();
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(typed) = obstacle else { continue };
         let path = key_path!["obstacle", at];
         let Some(obstacle) = one(typed, dimension, &path, report) else { continue };
-        bodies.iter().for_each(|body| check_start(&obstacle, body, &path, report));
+        bodies.iter().for_each(|body| check_start(&obstacle, body, is_by_nodes, &path, report));
         obstacles.push(obstacle);
     }
     (obstacles.len() == typed.len()).then_some(obstacles)
@@ -108,8 +110,21 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[PathPart<'_>], report:
 /// The depth that rounding may leave a node in an obstacle at the start, in body sizes.
 const TOUCHING: f64 = 1e-9;
 
-/// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
-fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+/// Reports obstacles that contain nodes at the start, and obstacles that start inside the body. Where surfaces meet, a body must not
+/// even touch a box: contact keeps them apart, but cannot part them.
+fn check_start(
+    obstacle: &Obstacle,
+    body: &SceneBody,
+    is_by_nodes: bool,
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) {
+    let mut obstacle = obstacle.clone();
+    let mut clearance = 0.0;
+    if let (false, Shape::Box { half, .. }) = (is_by_nodes, &mut obstacle.shape) {
+        clearance = CLEARANCE * body.side;
+        *half += clearance;
+    }
     let (placed, of) = (obstacle.at(0.0, 1.0), body.in_words());
     let name = match obstacle.shape {
         Shape::Floor { .. } => "floor",
@@ -127,9 +142,15 @@ fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], rep
         _ => Some(this),
     });
     if let Some((node, depth)) = deepest {
-        let message =
-            format!("{of} starts inside this {name}: node {node} lies {} below its surface", quantity(depth, "m"));
+        let message = match depth <= clearance {
+            true => format!("{of} touches this {name} at the start, with node {node}: contact cannot part them"),
+            false => {
+                let below = quantity(depth - clearance, "m");
+                format!("{of} starts inside this {name}: node {node} lies {below} below its surface")
+            }
+        };
         let help = match obstacle.shape {
+            _ if depth <= clearance => &format!("leave at least {} between them", quantity(2.0 * clearance, "m")),
             Shape::Floor { .. } => "move the floor, or set the body on it with its `lowest` or `offset`",
             _ => "move one of them; a path can move the obstacle there later",
         };
@@ -150,7 +171,7 @@ fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], rep
         let point =
             if body.body.dimension() == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
         let message = format!("this {name} starts inside {of}, at {point}, between its nodes");
-        report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside");
+        report.at(path, message, "move one of them; bodies collide with an obstacle from outside");
     }
 }
 
