@@ -141,9 +141,10 @@ fn with_friction(value: &mut Value) {
 fn with_contact(value: &mut Value) {
     let is_of_nodes = value["contact"]["rule"] == json!(ContactRule::Nodes);
     let has_extent = |obstacle: &Value| !["floor", "plate"].contains(&obstacle["kind"].as_str().unwrap_or_default());
-    let bodies = value["body"].as_array().map_or(1, Vec::len);
+    let has_several =
+        |run: &Value| run["bodies"].as_array().or(value["body"].as_array()).is_some_and(|of| of.len() > 1);
     let meets_itself = |body: &Value| body["self_contact"] == true;
-    let can_meet = bodies > 1
+    let can_meet = value["run"].as_array().is_some_and(|runs| runs.iter().any(has_several))
         || value["obstacle"].as_array().is_some_and(|obstacles| obstacles.iter().any(has_extent))
         || meets_itself(&value["body"])
         || value["body"].as_array().is_some_and(|bodies| bodies.iter().any(meets_itself));

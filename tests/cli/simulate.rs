@@ -526,6 +526,7 @@ fn states_of_runs_with_steps_of_their_own() {
 
 /// A cube falls on another, which is held.
 const PAIR: &str = r#"
+contact.rule = "nodes"
 gravity = [0, -10, 0]
 [time]
 duration = 0.4

@@ -8,6 +8,7 @@ use crate::scene::Limits;
 fn scene(rate: f64, integrator: &str) -> Scene {
     let text = format!(
         "gravity = [0, -10, 0]
+        contact.rule = 'nodes'
         time = {{ duration = 0.4, frames_per_second = {rate}, integrator = '{integrator}' }}
         [[body]]
         name = 'cube'

@@ -2,6 +2,7 @@
 
 mod archives;
 mod bodies;
+mod contact;
 mod digest;
 mod figures;
 mod good;

@@ -149,7 +149,11 @@ fn a_summary_has_a_line_for_each_body() {
 
 /// The warnings of a scene about its bodies at the start.
 fn overlaps(text: &str) -> Vec<(usize, String)> {
-    good(text).warnings.into_iter().map(|warning| (warning.line, warning.message)).collect()
+    good(&format!("{text}contact.rule = 'nodes'"))
+        .warnings
+        .into_iter()
+        .map(|warning| (warning.line, warning.message))
+        .collect()
 }
 
 #[test]

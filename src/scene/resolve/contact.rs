@@ -8,7 +8,7 @@ use crate::reading::words::{count, list, nearest, quoted};
 use crate::scene::file::{BodyFile, PairFile, ShapeFile};
 use crate::scene::{Scene, SceneBody};
 use crate::sim::geometry::overlaps;
-use crate::sim::{BodyContact, Contacts, PairContact, Side};
+use crate::sim::{BodyContact, Contacts, PairContact, Shape, Side};
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -144,6 +144,29 @@ fn side(scene: &Typed<'_>, name: &str, path: &[PathPart<'_>], report: &mut Colle
         return None;
     }
     Some(side)
+}
+
+/// Warns of models whose elements break, where surfaces can meet.
+pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
+    let Some(contacts) = &scene.contacts else { return };
+    let has_extent = scene.obstacles.iter().any(|one| !matches!(one.shape, Shape::Floor { .. } | Shape::Plate { .. }));
+    for (at, run) in scene.runs.iter().enumerate() {
+        let meets_itself = |&body: &usize| contacts.bodies.get(body).is_some_and(|body| body.itself);
+        if !has_extent && run.of.len() < 2 && !run.of.iter().any(meets_itself) {
+            continue;
+        }
+        let by_name =
+            run.of.iter().map(|&body| key_path!["run", at, "models", scene.bodies[body].name.as_str()].to_vec());
+        let models = by_name.chain([key_path!["run", at, "model"].to_vec()]);
+        for path in models.map(|model| key_path![model; "breaks_at"]) {
+            if !report.is_typed(&path) {
+                continue;
+            }
+            let message =
+                format!("elements of {} break, but the surface that meets others stays whole", quoted(&run.name));
+            report.warn(&path, message, "write contact.rule = \"nodes\" if others shall go through a break");
+        }
+    }
 }
 
 /// The share of a cell by which bodies, and boxes, are moved to see whether they touch: half of the distance that they keep.

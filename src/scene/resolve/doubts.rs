@@ -18,6 +18,7 @@ pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>)
     if scene.contacts.is_none() {
         warn_of_overlaps(scene, typed, report);
     }
+    super::contact::warn_of_breaking(scene, report);
     warn_of_braked_rotation(scene, report);
     warn_of_sizes(scene, typed, report);
     if let Some((run, [message, help])) = scene.too_soft() {

@@ -1,0 +1,180 @@
+//! Contact in scene files: what it means, and every mistake in it.
+
+use super::{bad, expect, good};
+use localshape::sim::{BodyContact, Contacts, PairContact, Side};
+
+/// Two blocks side by side, and obstacles of three kinds away from them.
+const WORLD: &str = "\
+time = { duration = 1 }
+run = [
+    { name = 'Both', model = { kind = 'shape-based', stiffness = 1e4 } },
+    { name = 'Cube', bodies = ['cube'], model = { kind = 'shape-based', stiffness = 1e4 } },
+]
+body = [
+    { name = 'bar', lattice = { cells = [2, 1, 1], side = 0.1 } },
+    { name = 'cube', lattice = { cells = [1, 1, 1], side = 0.3 }, offset = [1, 0, 0] },
+]
+obstacle = [
+    { kind = 'floor', name = 'ground', height = -1 },
+    { kind = 'sphere', name = 'ball', centre = [0, 2, 0], radius = 0.1 },
+    { kind = 'box', name = 'stone', centre = [0, -0.8, 0], size = [0.1, 0.1, 0.1] },
+]
+";
+
+/// Adds lines to the world and expects exactly these mistakes in the addition.
+#[track_caller]
+fn case(added: &str, expected: &str) {
+    expect(&bad(&format!("{WORLD}{added}")), WORLD.lines().count(), expected);
+}
+
+#[test]
+fn surfaces_meet_unless_a_scene_says_nodes() {
+    let plain = good(WORLD);
+    let usual = Contacts { bodies: vec![BodyContact::default(); 2], ..Contacts::default() };
+    assert_eq!(plain.contacts, Some(usual));
+    assert_eq!(good(&format!("{WORLD}contact.rule = 'surfaces'")).digest, plain.digest);
+    let nodes = good(&format!("{WORLD}contact.rule = 'nodes'"));
+    assert_eq!(nodes.contacts, None);
+    assert_ne!(nodes.digest, plain.digest);
+}
+
+#[test]
+fn where_no_surfaces_can_meet_the_rule_changes_no_digest() {
+    let one = "time.duration = 1\nobstacle = [{ kind = 'floor' }]
+        run = [{ name = 'One', model = { kind = 'shape-based', stiffness = 1e4 } }]
+        body = { lattice = { cells = [1, 1, 1], side = 0.1 }, lowest = 0.1 }\n";
+    let digest = |text: &str| good(text).digest;
+    let plain = digest(one);
+    assert_eq!(digest(&format!("{one}contact.rule = 'nodes'")), plain);
+    assert_eq!(digest(&format!("{one}contact.friction = 0.5")), plain);
+    let own = one.replace("lowest", "self_contact = true, lowest");
+    assert_ne!(digest(&own), plain);
+    let ball = "obstacle = [{ kind = 'sphere', centre = [1, 1, 1], radius = 0.1 }";
+    let beside = one.replace("obstacle = [{ kind = 'floor' }", ball);
+    // Nodes met obstacles at first: the digest of such scenes has stayed.
+    assert_ne!(digest(&beside), digest(&format!("{beside}contact.rule = 'nodes'")));
+}
+
+#[test]
+fn all_settings_reach_the_bodies_of_each_run() {
+    let added = "contact = { restitution = 0.4, friction = 0.6, pair = [
+        { of = ['cube', 'bar'], friction = 0.1 }, { of = ['ball', 'cube'], restitution = 1, thickness = 0.01 }] }";
+    let text =
+        format!("{WORLD}{added}").replace("'cube', lattice", "'cube', self_contact = true, thickness = 0.02, lattice");
+    let scene = good(&text);
+    let own = BodyContact { thickness: Some(0.02), itself: true };
+    let pair = |of, restitution, friction, thickness| PairContact { of, restitution, friction, thickness };
+    let ball = |body| pair([Side::Obstacle(1), Side::Body(body)], Some(1.0), None, Some(0.01));
+    let all = Contacts {
+        restitution: 0.4,
+        friction: 0.6,
+        bodies: vec![BodyContact::default(), own],
+        pairs: vec![pair([Side::Body(1), Side::Body(0)], None, Some(0.1), None), ball(1)],
+    };
+    assert_eq!(scene.contacts.as_ref(), Some(&all));
+    // Alone the cube is body 0, and has no pair with the bar.
+    assert_eq!(scene.runs[0].contacts(&all), all);
+    assert_eq!(scene.runs[1].contacts(&all), Contacts { bodies: vec![own], pairs: vec![ball(0)], ..all });
+}
+
+#[test]
+fn names_of_pairs() {
+    case(
+        "[[contact.pair]]\nof = ['cub', 'bar']\nfriction = 1",
+        "2:7 there is no body or obstacle \"cub\" did you mean \"cube\"?",
+    );
+    case(
+        "[[contact.pair]]\nof = ['x', 'bar']\nfriction = 1",
+        "2:7 there is no body or obstacle \"x\" the names are \"bar\", \"cube\", \"ground\", \"ball\" and \"stone\"",
+    );
+    case(
+        "[[contact.pair]]\nof = ['cube', 'cube']\nfriction = 1",
+        "2:6 this is a pair of \"cube\" with itself a body with `self_contact = true` meets itself",
+    );
+    case(
+        "[[contact.pair]]\nof = ['ball', 'stone']\nfriction = 1",
+        "2:6 \"ball\" and \"stone\" are obstacles, which do not meet name a body",
+    );
+    case(
+        "[[contact.pair]]\nof = ['bar', 'ground']\nfriction = 1",
+        "2:14 \"ground\" is a half-space, which nodes meet, all in the same way give the obstacle its own",
+    );
+    case(
+        "[[contact.pair]]\nof = ['cube', 'bar']\nfriction = 1\n[[contact.pair]]\nof = ['bar', 'cube']\nfriction = 2",
+        "5:6 \"bar\" and \"cube\" are a pair already, `contact.pair[0]` keep one of the two",
+    );
+    case("[[contact.pair]]\nof = ['cube', 'bar']", "2:6 the pair of \"cube\" and \"bar\" changes nothing");
+    case("[[contact.pair]]\nof = ['cube']\nfriction = 1", "2:6 `contact.pair[0].of` has 1 entry; expected");
+    let twice = |from: &str, to: &str, expected: &str| expect(&bad(&WORLD.replace(from, to)), 0, expected);
+    twice("'ball'", "'ground'", "12:30 two obstacles are called \"ground\": `obstacle[0]` and `obstacle[1]`");
+    twice("'ball'", "'cube'", "12:30 a body and an obstacle are called \"cube\" give the obstacle another name");
+}
+
+#[test]
+fn numbers_out_of_range() {
+    for (added, expected) in [
+        ("contact.restitution = 1.5", "1:23 `contact.restitution` is 1.5; expected a number from 0 to 1"),
+        ("contact.friction = -0.5", "1:20 `contact.friction` is -0.5; expected a number of 0 or more"),
+        (
+            "[[contact.pair]]\nof = ['cube', 'bar']\nthickness = -0.1",
+            "3:13 `contact.pair[0].thickness` is -0.1; expected a number greater than 0",
+        ),
+        (
+            "[[contact.pair]]\nof = ['cube', 'bar']\nthickness = 0.2",
+            "3:13 the thickness 0.2 m is larger than a cell of the body \"bar\", 0.1 m expected at most 0.1 m",
+        ),
+        ("contact.rule = 'faces'", "1:16 `contact.rule` is \"faces\"; expected \"surfaces\" or \"nodes\""),
+        ("contact = 'nodes'", "1:11 `contact` is the string \"nodes\"; expected a table"),
+    ] {
+        case(added, expected);
+    }
+    let thick = |value: &str| bad(&WORLD.replace("'bar', lattice", &format!("'bar', thickness = {value}, lattice")));
+    expect(&thick("0.2"), 0, "7:35 the thickness 0.2 m is larger than a cell of the body \"bar\", 0.1 m");
+    expect(&thick("0"), 0, "7:35 `body[0].thickness` is 0; expected a number greater than 0");
+}
+
+#[test]
+fn settings_of_surfaces_beside_nodes() {
+    let nodes = format!("{WORLD}[contact]\nrule = 'nodes'\n");
+    let idle = |key: &str| format!("`{key}` has no effect, as `contact.rule` is \"nodes\"");
+    let of_contact = |added: &str, place: &str, key: &str| {
+        expect(&bad(&format!("{nodes}{added}")), nodes.lines().count(), &format!("{place} {}", idle(key)));
+    };
+    of_contact("friction = 1", "1:1", "contact.friction");
+    of_contact("[[contact.pair]]\nof = ['cube', 'bar']\nfriction = 1", "1:11", "contact.pair");
+    let of_body = nodes.replace("'bar', lattice", "'bar', self_contact = true, lattice");
+    expect(&bad(&of_body), 0, &format!("7:21 {}", idle("body[0].self_contact")));
+}
+
+/// Contact keeps surfaces apart, but cannot part them.
+#[test]
+fn bodies_that_overlap_or_touch_at_the_start() {
+    let moved = |to: &str| WORLD.replace("offset = [1, 0, 0]", &format!("offset = {to}"));
+    // They stand side by side from 0.25 m on.
+    for to in ["[0.2, 0, 0]", "[0.25, 0, 0]", "[0, 0.1, 0]", "[0, -0.3, 0]", "[0, 0, -0.2]"] {
+        let message =
+            "8:5 \"bar\" and \"cube\" overlap or touch at the start: contact cannot part them move one of them";
+        expect(&bad(&moved(to)), 0, message);
+        assert_eq!(good(&format!("{}contact.rule = 'nodes'", moved(to))).contacts, None);
+    }
+    for to in ["[0.26, 0, 0]", "[0, 0.11, 0]", "[0, 0, -0.21]"] {
+        good(&moved(to));
+    }
+    // The centre of its upper side is at -0.75 m.
+    let stone = |centre: &str| WORLD.replace("[0, -0.8, 0]", centre);
+    let message =
+        "13:5 the body \"bar\" touches this box at the start, with node 1: contact cannot part them leave at least";
+    expect(&bad(&stone("[0, -0.05, 0]")), 0, message);
+    good(&format!("{}contact.rule = 'nodes'", stone("[0, -0.05, 0]")));
+    good(&stone("[0, -0.06, 0]"));
+}
+
+#[test]
+fn surfaces_do_not_break_with_their_elements() {
+    let breaking = WORLD
+        .replace("'Both', model = { kind = 'shape-based',", "'Both', model = { breaks_at = 0.1, kind = 'shape-based',");
+    let warnings = good(&breaking).warnings;
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert_eq!(warnings[0].message, "elements of \"Both\" break, but the surface that meets others stays whole");
+    assert_eq!(good(&format!("{breaking}contact.rule = 'nodes'")).warnings, []);
+}
