@@ -61,7 +61,6 @@ pub(in crate::scene) struct SceneFile {
     #[schemars(with = "Vec<ObstacleFile>")]
     pub(in crate::scene) obstacle: Vec<Option<ObstacleFile>>,
     /// How the surfaces of bodies meet. Default: as an empty table.
-    #[schemars(with = "ContactFile")]
     pub(in crate::scene) contact: Option<ContactFile>,
     /// Nodes that are held in place. Default: none.
     #[serde(default)]
