@@ -142,7 +142,8 @@ fn check_start(
         _ => Some(this),
     });
     if let Some((node, depth)) = deepest {
-        let message = match depth <= clearance {
+        let touches = depth <= clearance + TOUCHING * body.body.extent() && clearance > 0.0;
+        let message = match touches {
             true => format!("{of} touches this {name} at the start, with node {node}: contact cannot part them"),
             false => {
                 let below = quantity(depth - clearance, "m");
@@ -150,7 +151,7 @@ fn check_start(
             }
         };
         let help = match obstacle.shape {
-            _ if depth <= clearance => &format!("leave at least {} between them", quantity(2.0 * clearance, "m")),
+            _ if touches => &format!("leave at least {} between them", quantity(2.0 * clearance, "m")),
             Shape::Floor { .. } => "move the floor, or set the body on it with its `lowest` or `offset`",
             _ => "move one of them; a path can move the obstacle there later",
         };
