@@ -3,8 +3,8 @@
 use localshape::glam::DVec3;
 use localshape::look::Theme;
 use localshape::scene::{
-    BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene,
-    SceneBuilder, Side, Start, StartShape, Swing,
+    BodyBuilder, Cells, ContactBuilder, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, PairBuilder, Rotation,
+    RunBuilder, Scene, SceneBuilder, Side, Start, StartShape, Swing,
 };
 use localshape::sim::model::{ElasticModel, ForceModel, Properties, Report, Scratch, Share, mass_spring, shape_based};
 use localshape::sim::{Body, Diagnostic, Ease, Field, Integrator, Kernel, Nodes, Springs};
@@ -41,6 +41,20 @@ fn code_and_files_make_the_same_scenes() {
     assert_same(one(body()), &head(space));
     let ball = "[[obstacle]]\nkind = 'sphere'\ncentre = [1.5e3, 0, 0]\nradius = 300.0\n";
     assert_same(one(body()).obstacle(ObstacleBuilder::sphere([1.5e3, 0.0, 0.0], 300.0)), &(head(space) + ball));
+
+    let pair = PairBuilder::of("body", "ball").restitution(0.5).friction(0.1).thickness(2.0);
+    let contact = ContactBuilder::surfaces().restitution(0.2).friction(0.3).pair(pair);
+    let named = ObstacleBuilder::sphere([1.5e3, 0.0, 0.0], 300.0).name("ball");
+    let file = head(&format!("{space}\nname = 'body'\nself_contact = true\nthickness = 5.0"))
+        + "[[obstacle]]\nkind = 'sphere'\nname = 'ball'\ncentre = [1.5e3, 0, 0]\nradius = 300.0
+        [contact]\nrule = 'surfaces'\nrestitution = 0.2\nfriction = 0.3
+        pair = [{ of = ['body', 'ball'], restitution = 0.5, friction = 0.1, thickness = 2 }]";
+    let folded = BodyBuilder::arrays(rest, [[0, 1, 2, 3]]).name("body").self_contact().thickness(5.0);
+    assert_same(one(folded).obstacle(named).contact(contact), &file);
+    assert_same(
+        one(BodyBuilder::arrays(rest, [[0, 1, 2, 3]])).contact(ContactBuilder::nodes()),
+        &(head(space) + "[contact]\nrule = 'nodes'"),
+    );
 
     let vectors = rest.map(DVec3::from_array);
     let body = BodyBuilder::arrays(vectors, vec![vec![3, 2, 1, 0]]).convex().springs([[0, 1], [1, 2]]);

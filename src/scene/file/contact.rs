@@ -10,16 +10,21 @@ pub(in crate::scene) struct ContactFile {
     /// What meets. Default: `"surfaces"`.
     pub(in crate::scene) rule: Option<ContactRule>,
     /// Coefficient of restitution e between bodies, and of bodies with themselves. With obstacles it is that of the obstacle.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(in crate::scene) restitution: f64,
     /// Coefficient of friction μ between bodies, and of bodies with themselves. With obstacles it is that of the obstacle.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) friction: f64,
     /// Pairs that meet otherwise. Default: none.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(in crate::scene) pair: Vec<PairFile>,
+}
+
+/// Scenes made in code are checked as written: beside `"nodes"` nothing may be.
+fn is_zero(coefficient: &f64) -> bool {
+    *coefficient == 0.0
 }
 
 /// What meets.
