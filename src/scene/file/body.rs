@@ -129,6 +129,7 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) convex: bool,
     /// Whether its surface meets itself, so that it cannot be folded through itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[schemars(extend("default" = false))]
     pub(in crate::scene) self_contact: bool,
     /// The distance that its surface keeps from an obstacle, and half of that between two such bodies (m), at most a cell. Default: the
     /// fortieth part of the mean length of the edges of its surface.

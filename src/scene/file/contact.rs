@@ -11,11 +11,11 @@ pub(in crate::scene) struct ContactFile {
     pub(in crate::scene) rule: Option<ContactRule>,
     /// Coefficient of restitution e between bodies, and of bodies with themselves. With obstacles it is that of the obstacle.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 1.0))]
+    #[schemars(range(min = 0.0, max = 1.0), extend("default" = 0.0))]
     pub(in crate::scene) restitution: f64,
     /// Coefficient of friction μ between bodies, and of bodies with themselves. With obstacles it is that of the obstacle.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0))]
+    #[schemars(range(min = 0.0), extend("default" = 0.0))]
     pub(in crate::scene) friction: f64,
     /// Pairs that meet otherwise. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
