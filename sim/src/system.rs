@@ -1,6 +1,6 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
-use super::contact::{End, Obstacle, Shape, Stage};
+use super::contact::{End, Obstacle, Shape, Stage, Timing};
 use super::crew::Crew;
 use super::dynamics::SpeedLimit;
 use super::grip::Grip;
@@ -161,6 +161,7 @@ impl System {
         before: &State,
         after: &mut State,
         acceleration: Option<&[DVec3]>,
+        timing: Timing,
     ) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
         for obstacle in self.met_by_nodes() {
@@ -169,9 +170,7 @@ impl System {
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);
         }
-        // Methods without accelerations end a step with the velocity that nodes had in it.
-        let is_euler = acceleration.is_none();
-        self.meet(End { interval, before: before.nodes(), position, velocity, is_euler }, constraints);
+        self.meet(End { interval, before: before.nodes(), position, velocity, timing }, constraints);
     }
 
     /// Lets surfaces meet at the end of a step. `constraints` is the memory of grips in the step.

@@ -16,6 +16,7 @@ mod surface;
 pub(crate) use bound::{Bound, Floor};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
+pub(crate) use rule::Timing;
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;
 pub use shape::Shape;

@@ -1,17 +1,45 @@
 //! Two surfaces that may meet: lists of their features that are near each other, and what of them touches in a step.
 
 use super::closest::{self, On};
-use super::rule::{Law, Term, Touch};
+use super::rule::{Law, Term, Timing, Touch};
 use super::surface::{Facet, Surface};
 use crate::carried::Weights;
 use glam::DVec3;
 
-/// Features of two surfaces, and the way that they move at least until they can touch.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    features: [u32; 2],
-    /// The [`Pair::way`] from which on it is looked at (m).
-    wake: f64,
+/// Features of two surfaces in their order, and from which [`Pair::way`] on each of them is looked at (m).
+#[derive(Clone, Debug, Default)]
+struct Candidates {
+    features: Vec<[u32; 2]>,
+    wakes: Vec<f64>,
+    /// The least of each [`Self::BLOCK`].
+    least: Vec<f64>,
+}
+
+impl Candidates {
+    /// So many are passed over at once where all of them rest.
+    const BLOCK: usize = 16;
+
+    /// Takes others, which are all awake.
+    fn renew(&mut self, features: impl Iterator<Item = [u32; 2]>) {
+        self.features.clear();
+        self.features.extend(features);
+        let count = self.features.len();
+        for (list, len) in [(&mut self.wakes, count), (&mut self.least, count.div_ceil(Self::BLOCK))] {
+            list.clear();
+            list.resize(len, f64::NEG_INFINITY);
+        }
+    }
+
+    /// Calls `look` with those that are awake at a way (m), in order. It returns when each wakes next.
+    fn for_each_awake(&mut self, way: f64, mut look: impl FnMut([u32; 2]) -> f64) {
+        let blocks = self.wakes.chunks_mut(Self::BLOCK).zip(self.features.chunks(Self::BLOCK));
+        for (least, (wakes, features)) in self.least.iter_mut().zip(blocks).filter(|(least, _)| **least <= way) {
+            for (wake, features) in wakes.iter_mut().zip(features).filter(|(wake, _)| **wake <= way) {
+                *wake = look(*features);
+            }
+            *least = wakes.iter().fold(f64::INFINITY, |least, &wake| least.min(wake));
+        }
+    }
 }
 
 /// The kinds of features that meet.
@@ -36,7 +64,7 @@ pub(super) struct Pair {
     way: f64,
     /// Up to which way the lists hold all that can touch; `None` before they are made.
     until: Option<f64>,
-    candidates: [Vec<Candidate>; 3],
+    candidates: [Candidates; 3],
 }
 
 /// Nodes and points of obstacles, numbered after them.
@@ -65,17 +93,22 @@ impl Places<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
     pub(super) surfaces: &'a [Surface],
-    /// At rest; only for bodies that meet themselves.
+    /// Nodes at rest (m), for bodies that meet themselves.
     pub(super) rest: Places<'a>,
-    /// At the start of the step.
-    pub(super) start: Places<'a>,
+    /// The points of each surface at the start of the step (m); of those in pairs.
+    pub(super) start: &'a [Vec<DVec3>],
     /// At the end of the step, before contact.
     pub(super) end: Places<'a>,
     /// The velocities at the start and at the end (m/s).
     pub(super) velocity: [Places<'a>; 2],
     pub(super) inverse_mass: &'a [f64],
-    /// See [`super::rule::Moved::is_euler`].
-    pub(super) is_euler: bool,
+    pub(super) timing: Timing,
+}
+
+impl<'a> Seen<'a> {
+    fn placed(&self, surface: usize) -> Placed<'a> {
+        Placed { surface: &self.surfaces[surface], at: &self.start[surface] }
+    }
 }
 
 /// What touches in a step: first points with facets, then edges, each in the order of pairs and features.
@@ -94,14 +127,31 @@ impl Touches {
     }
 }
 
+/// A surface with the places of its points (m).
+#[derive(Clone, Copy)]
+struct Placed<'a> {
+    surface: &'a Surface,
+    at: &'a [DVec3],
+}
+
+impl Placed<'_> {
+    fn point(&self, point: u32) -> DVec3 {
+        self.at[point as usize]
+    }
+}
+
 /// Two closest points, each as weighted points of its surface.
 struct Closest {
     way: DVec3,
-    /// For each of the two surfaces its points and their shares.
+    /// For each of the two surfaces its points and their shares. Points with a share of zero belong to the feature as well.
     shares: [[(u32, f64); 3]; 2],
-    /// Whether it is a contact: a local minimum of the distance that no other feature counts.
-    counts: bool,
+    /// Zero for a contact: a local minimum of the distance that no other feature counts. Otherwise how far points of the features have to move
+    /// at least (m) until it can be one.
+    rests: f64,
 }
+
+/// A way of one point changes what depends on lengths of features by at most so many times as much.
+const LEVER: f64 = 6.0;
 
 impl Pair {
     pub(super) fn new(of: [usize; 2], law: Law) -> Self {
@@ -122,11 +172,11 @@ impl Pair {
     fn list(&mut self, seen: &Seen<'_>, ahead: f64) {
         /// A share of the size of a cell, and of the way of a step.
         const SKIN: [f64; 2] = [2.0, 8.0];
-        let [one, other] = self.of.map(|surface| &seen.surfaces[surface]);
-        let skin = (SKIN[0] * (one.thickness + other.thickness)).max(SKIN[1] * ahead);
+        let [one, other] = self.of.map(|surface| seen.placed(surface));
+        let skin = (SKIN[0] * (one.surface.thickness + other.surface.thickness)).max(SKIN[1] * ahead);
         let reach = self.law.gap + skin;
-        self.candidates.iter_mut().for_each(Vec::clear);
-        let [mine, theirs] = [one, other].map(|surface| Extent::of(surface, &seen.start));
+        self.candidates.iter_mut().for_each(|list| list.renew(std::iter::empty()));
+        let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.iter().copied()));
         let apart = mine.distance(&theirs);
         if apart >= reach && self.of[0] != self.of[1] {
             self.until = Some(self.way + (apart - self.law.gap));
@@ -134,15 +184,12 @@ impl Pair {
         }
         self.until = Some(self.way + skin);
         let common = mine.grown(reach).common(&theirs.grown(reach));
-        let place = |surface: &Surface, point: u32| seen.start.point(&surface.points, point);
-        let lists = |surface: &Surface| {
-            let points = (0..surface.points.len() as u32).map(|point| (point, Extent::at(place(surface, point))));
-            let facets = (0u32..).zip(&surface.facets).map(|(number, facet)| {
-                (number, Extent::around(facet.used().iter().map(|&corner| place(surface, corner))))
-            });
-            let edges = (0u32..).zip(&surface.edges);
-            let edges =
-                edges.map(|(number, ends)| (number, Extent::around(ends.iter().map(|&end| place(surface, end)))));
+        let lists = |placed: Placed<'_>| {
+            let around = |points: &[u32]| Extent::around(points.iter().map(|&point| placed.point(point)));
+            let points =
+                (0u32..).zip(placed.at).map(|(number, &point)| (number, Extent::around(std::iter::once(point))));
+            let facets = (0u32..).zip(&placed.surface.facets).map(|(number, facet)| (number, around(facet.used())));
+            let edges = (0u32..).zip(&placed.surface.edges).map(|(number, ends)| (number, around(ends)));
             [near(points, &common), near(facets, &common), near(edges, &common)]
         };
         let [of_one, of_other] = [lists(one), lists(other)];
@@ -158,29 +205,33 @@ impl Pair {
             let mut found = Vec::new();
             sweep(sides, reach, axis, |features| found.push(features));
             if self.of[0] == self.of[1] {
-                found.retain(|&features| is_apart_at_rest(one, kind, features, &seen.rest, 2.0 * self.law.gap));
+                let points = 0..one.surface.points.len() as u32;
+                let at: Vec<DVec3> = points.map(|point| seen.rest.point(&one.surface.points, point)).collect();
+                let rest = Placed { surface: one.surface, at: &at };
+                found.retain(|&features| is_apart_at_rest(rest, kind, features, 2.0 * self.law.gap));
             }
             found.sort_unstable();
-            self.candidates[at]
-                .extend(found.into_iter().map(|features| Candidate { features, wake: f64::NEG_INFINITY }));
+            self.candidates[at].renew(found.into_iter());
         }
     }
 
     /// Adds what touches in this step to `touches`.
     pub(super) fn look(&mut self, seen: &Seen<'_>, ahead: f64, touches: &mut Touches) {
         let Self { of, law, way, candidates, .. } = self;
-        let [one, other] = of.map(|surface| &seen.surfaces[surface]);
+        let [one, other] = of.map(|surface| seen.placed(surface));
         let due = *way + 2.0 * ahead;
         for (kind, list) in KINDS.into_iter().zip(candidates) {
-            for candidate in list.iter_mut().filter(|candidate| candidate.wake <= due) {
-                let closest = closest(kind, [one, other], of[0] == of[1], candidate.features, &seen.start);
+            list.for_each_awake(due, |features| {
+                let closest = closest(kind, [one, other], of[0] == of[1], features);
                 let distance = closest.way.length();
-                if distance >= law.gap + 2.0 * ahead {
-                    candidate.wake = *way + (distance - law.gap);
-                } else if closest.counts && distance > 0.0 {
-                    touches.push(kind, [one, other], *law, &closest, distance, ahead, seen);
+                if distance >= law.gap + 2.0 * ahead || closest.rests > 0.0 {
+                    return *way + closest.rests.max(distance - law.gap);
                 }
-            }
+                if distance > 0.0 {
+                    touches.push(kind, [one.surface, other.surface], *law, &closest, distance, ahead, seen);
+                }
+                f64::NEG_INFINITY
+            });
         }
     }
 }
@@ -200,7 +251,7 @@ impl Touches {
     ) {
         let first = self.terms.len();
         for (surface, (shares, sign)) in surfaces.into_iter().zip(closest.shares.iter().zip([1.0, -1.0])) {
-            for &(point, share) in shares.iter().filter(|(_, share)| *share != 0.0) {
+            for &(point, share) in shares {
                 let (nodes, weights) = surface.points.of(point as usize);
                 for (&node, &weight) in nodes.iter().zip(weights) {
                     let weight = sign * share * weight;
@@ -222,8 +273,8 @@ impl Touches {
             self.terms.truncate(first);
             return;
         }
-        let late = 0.5 * (along(&seen.velocity[0]) - along(&seen.velocity[1]));
-        let [to_rebound, to_path] = if seen.is_euler { [late, 0.0] } else { [2.0 * late, late] };
+        let change = along(&seen.velocity[0]) - along(&seen.velocity[1]);
+        let [to_rebound, to_path] = seen.timing.lags().map(|lag| lag * change);
         let terms = [first, self.terms.len()].map(|at| at as u32);
         let list = if kind == Kind::Edges { &mut self.of_edges } else { &mut self.of_points };
         list.push(Touch { law, normal, distance, mobility, to_rebound, to_path, terms });
@@ -231,30 +282,30 @@ impl Touches {
 }
 
 /// The closest points of two features.
-fn closest(kind: Kind, [one, other]: [&Surface; 2], is_same: bool, features: [u32; 2], at: &Places<'_>) -> Closest {
+fn closest(kind: Kind, [one, other]: [Placed<'_>; 2], is_same: bool, features: [u32; 2]) -> Closest {
     match kind {
-        Kind::PointFacet => point_facet([one, other], features, true, is_same, at),
+        Kind::PointFacet => point_facet([one, other], features, true, is_same),
         Kind::FacetPoint => {
             let [facet, point] = features;
-            let Closest { way, shares: [first, second], counts } =
-                point_facet([other, one], [point, facet], false, is_same, at);
-            Closest { way: -way, shares: [second, first], counts }
+            let Closest { way, shares: [first, second], rests } =
+                point_facet([other, one], [point, facet], false, is_same);
+            Closest { way: -way, shares: [second, first], rests }
         }
-        Kind::Edges => edges([one, other], features, at),
+        Kind::Edges => edges([one, other], features),
     }
 }
 
 /// `counts_corners`: whether two points that meet are counted here, and not from the other side.
 fn point_facet(
-    [one, other]: [&Surface; 2],
+    [one, other]: [Placed<'_>; 2],
     [point, facet]: [u32; 2],
     counts_corners: bool,
     is_same: bool,
-    at: &Places<'_>,
 ) -> Closest {
-    let facet = &other.facets[facet as usize];
-    let place = |corner: u32| at.point(&other.points, corner);
-    let (here, corners) = (at.point(&one.points, point), facet.corners.map(place));
+    let Placed { surface, .. } = other;
+    let facet = &surface.facets[facet as usize];
+    let place = |corner: u32| other.point(corner);
+    let (here, corners) = (one.point(point), facet.corners.map(place));
     let nearest = match facet.count {
         3 => closest::of_triangle(here, corners),
         2 => closest::of_segment(here, [corners[0], corners[1]]),
@@ -262,68 +313,99 @@ fn point_facet(
     };
     let there: DVec3 = corners.iter().zip(nearest.shares).map(|(&corner, share)| corner * share).sum();
     let way = here - there;
-    let counts = match nearest.on {
-        On::Inside => true,
+    // How far the point has to move until another part of the facet is the nearest.
+    let leaves = |on: &[usize]| {
+        let others = corners[..facet.count as usize].iter().enumerate().filter(|(corner, _)| !on.contains(corner));
+        let inwards = others.map(|(_, &corner)| -closest::along(way, corner - there));
+        on.iter()
+            .filter(|_| on.len() > 1)
+            .map(|&end| corners[end].distance(there))
+            .chain(inwards)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let rest = |counts: bool, towards: f64, on: &[usize]| match counts {
+        true if towards <= 0.0 => 0.0,
+        true => (towards.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE),
+        false => (leaves(on) / LEVER).max(f64::MIN_POSITIVE),
+    };
+    let rests = match nearest.on {
+        On::Inside => 0.0,
         On::Side(side) => {
-            let wings = &other.wings[facet.sides[side] as usize];
-            facet.owns_sides[side] && closest::leads_away(way, there, wings.iter().map(|&corner| place(corner)))
+            let wings = &surface.wings[facet.sides[side] as usize];
+            let towards = closest::towards(way, there, wings.iter().map(|&corner| place(corner)));
+            rest(facet.owns_sides[side], towards, &[side, (side + 1) % 3])
         }
         On::Corner(corner) => {
             let number = facet.corners[corner] as usize;
-            let ring = || other.rings[number].iter().map(|&corner| place(corner));
             let is_first = counts_corners && (!is_same || (point as usize) < number);
-            is_first && facet.owns_corners[corner] && closest::leads_away(way, there, ring())
+            let towards = closest::towards(way, there, surface.rings[number].iter().map(|&corner| place(corner)));
+            rest(is_first && facet.owns_corners[corner], towards, &[corner])
         }
     };
     let shares = [0, 1, 2].map(|corner| (facet.corners[corner], nearest.shares[corner]));
-    Closest { way, shares: [[(point, 1.0), (point, 0.0), (point, 0.0)], shares], counts }
+    Closest { way, shares: [[(point, 1.0), (point, 0.0), (point, 0.0)], shares], rests }
 }
 
 /// Edges that cross each other. Two that are both flat do not count: points and facets meet there.
-fn edges([one, other]: [&Surface; 2], [first, second]: [u32; 2], at: &Places<'_>) -> Closest {
+fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2]) -> Closest {
     /// The least squared sine of the angle between them: parallel edges meet with their ends.
-    const LEAST_SINE: f64 = 1e-8;
-    let ends = [(one, first), (other, second)].map(|(surface, edge)| surface.edges[edge as usize]);
-    let [mine, theirs] =
-        [(one, ends[0]), (other, ends[1])].map(|(surface, ends)| ends.map(|end| at.point(&surface.points, end)));
+    const LEAST_SINE: f64 = 1e-6;
+    let ends = [(one, first), (other, second)].map(|(placed, edge)| placed.surface.edges[edge as usize]);
+    let [mine, theirs] = [(one, ends[0]), (other, ends[1])].map(|(placed, ends)| ends.map(|end| placed.point(end)));
     let [s, t] = closest::of_segments(mine, theirs);
     let (here, there) = (mine[0].lerp(mine[1], s), theirs[0].lerp(theirs[1], t));
     let way = here - there;
     let along = [mine[1] - mine[0], theirs[1] - theirs[0]];
+    let sine = along[0].cross(along[1]).length_squared() / (along[0].length_squared() * along[1].length_squared());
+    let of = |placed: Placed<'_>, edge: u32, from: DVec3, way: DVec3, along: DVec3| {
+        let wings = &placed.surface.wings[edge as usize];
+        let around = wings.iter().map(|&corner| placed.point(corner));
+        (closest::towards(way, from, around.clone()), flat_for(along, from, around))
+    };
+    let [(my_way, my_flat), (their_way, their_flat)] =
+        [of(one, first, here, -way, along[0]), of(other, second, there, way, along[1])];
     let is_inside = |share: f64| share > 0.0 && share < 1.0;
-    let counts = is_inside(s)
-        && is_inside(t)
-        && along[0].cross(along[1]).length_squared()
-            > LEAST_SINE * along[0].length_squared() * along[1].length_squared()
-        && {
-            let wings = |surface: &Surface, edge: u32, from: DVec3, way: DVec3, along: DVec3| {
-                let around = surface.wings[edge as usize].iter().map(|&corner| at.point(&surface.points, corner));
-                (closest::leads_away(way, from, around.clone()), is_flat(along, from, around))
-            };
-            let (away, mine_flat) = wings(one, first, here, -way, along[0]);
-            away && {
-                let (away, theirs_flat) = wings(other, second, there, way, along[1]);
-                away && !(mine_flat && theirs_flat)
-            }
-        };
+    let beyond = if is_inside(s) && is_inside(t) && sine > LEAST_SINE {
+        my_way.max(their_way).max(0.0)
+    } else {
+        past_ends(mine, theirs, sine).max(f64::MIN_POSITIVE)
+    };
+    let rests = beyond.max(my_flat.min(their_flat)) / LEVER;
     let share = |[a, b]: [u32; 2], share: f64| [(a, 1.0 - share), (b, share), (b, 0.0)];
-    Closest { way, shares: [share(ends[0], s), share(ends[1], t)], counts }
+    Closest { way, shares: [share(ends[0], s), share(ends[1], t)], rests }
 }
 
-/// Whether the two triangles with an edge continue each other.
-fn is_flat(along: DVec3, from: DVec3, mut wings: impl Iterator<Item = DVec3>) -> bool {
-    /// The sine of the angle between them.
-    const BEND: f64 = 0.02;
-    let (Some(first), Some(second), None) = (wings.next(), wings.next(), wings.next()) else { return false };
+/// How far the ends of two segments have to move (m) until their lines are closest between them; zero if nearly parallel. `sine` is the squared
+/// one of their angle, by which ways grow to those of the closest points.
+fn past_ends([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], sine: f64) -> f64 {
+    let (one, other, from) = (b - a, d - c, a - c);
+    let (aa, cc, ac) = (one.length_squared(), other.length_squared(), one.dot(other));
+    let s = (ac * other.dot(from) - one.dot(from) * cc) / (aa * cc * sine);
+    let t = (ac * s + other.dot(from)) / cc;
+    let past = |share: f64, squared: f64| (-share).max(share - 1.0) * squared.sqrt();
+    let past = past(s, aa).max(past(t, cc)).min(aa.min(cc).sqrt());
+    if past > 0.0 { 0.5 * past * sine } else { 0.0 }
+}
+
+/// How far a corner has to move (m) until two triangles do not continue each other at an edge; zero if they do not.
+fn flat_for(along: DVec3, from: DVec3, mut wings: impl Iterator<Item = DVec3>) -> f64 {
+    /// The sine of the angle between them from which on they do not.
+    const BEND: f64 = 0.1;
+    let (Some(first), Some(second), None) = (wings.next(), wings.next(), wings.next()) else { return 0.0 };
     let [one, other] = [first, second].map(|corner| (corner - from).cross(along));
-    one.dot(other) < 0.0 && one.cross(other).length() < BEND * one.length() * other.length()
+    let bend = one.cross(other).length() / (one.length() * other.length());
+    if one.dot(other) >= 0.0 || !(bend < BEND) {
+        return 0.0;
+    }
+    (BEND - bend) * one.length().min(other.length()) / along.length()
 }
 
 /// Whether two features of a surface share no node and are at rest farther from each other than a distance (m).
-fn is_apart_at_rest(surface: &Surface, kind: Kind, [first, second]: [u32; 2], rest: &Places<'_>, far: f64) -> bool {
+fn is_apart_at_rest(rest: Placed<'_>, kind: Kind, [first, second]: [u32; 2], far: f64) -> bool {
     if kind == Kind::Edges && first >= second {
         return false;
     }
+    let Placed { surface, .. } = rest;
     let nodes = |points: &[u32]| {
         points.iter().flat_map(|&point| surface.points.of(point as usize).0).copied().collect::<Vec<_>>()
     };
@@ -332,7 +414,7 @@ fn is_apart_at_rest(surface: &Surface, kind: Kind, [first, second]: [u32; 2], re
         _ => (nodes(&[first]), nodes(surface.facets[second as usize].used())),
     };
     let is_joined = mine.iter().any(|node| theirs.contains(node));
-    !is_joined && closest(kind, [surface; 2], true, [first, second], rest).way.length() > far
+    !is_joined && closest(kind, [rest; 2], true, [first, second]).way.length() > far
 }
 
 impl Facet {
@@ -353,10 +435,6 @@ impl Extent {
     /// The box around all points of a surface.
     pub(super) fn of(surface: &Surface, at: &Places<'_>) -> Self {
         Self::around(surface.nodes.iter().map(|&node| at.node(node)))
-    }
-
-    fn at(point: DVec3) -> Self {
-        Self { low: point, high: point }
     }
 
     fn around(points: impl Iterator<Item = DVec3>) -> Self {

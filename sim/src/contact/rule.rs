@@ -6,7 +6,7 @@
 //!
 //! Impulses that are distributed over nodes by weights: F. Cirak and M. West, Int. J. Numer. Meth. Engng 64, 1078 (2005).
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// How two surfaces meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,27 @@ pub(super) struct Law {
     pub(super) friction: f64,
 }
 
-/// A node of a pair of closest points, with its weight: positive on the first surface, negative on the second.
+/// The velocity with which nodes moved in a step, and the one that decides a rebound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Timing {
+    /// They moved with the velocity at the end, as by semi-implicit Euler. The mean of those at the start and at the end decides.
+    End,
+    /// They moved with the mean of those at the start and at the end, as by other methods. The one at the start decides: the impulse acts as
+    /// if it were given there.
+    Start,
+}
+
+impl Timing {
+    /// The shares of the change of velocity in the step, from the end backwards, for the rebound and for the motion.
+    pub(super) fn lags(self) -> [f64; 2] {
+        match self {
+            Self::End => [0.5, 0.0],
+            Self::Start => [1.0, 0.5],
+        }
+    }
+}
+
+/// A node of the features with a pair of closest points, with its weight: positive on the first surface, negative on the second.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Term {
     pub(super) node: u32,
@@ -54,9 +74,7 @@ pub(super) struct Moved<'a> {
     pub(super) obstacles: [&'a [DVec3]; 2],
     /// ΔT (s).
     pub(super) step: f64,
-    /// Whether positions at the end of the step are those at its start plus the new velocities times ΔT, as angular momentum
-    /// is then known.
-    pub(super) is_euler: bool,
+    pub(super) timing: Timing,
 }
 
 impl Moved<'_> {
@@ -93,7 +111,7 @@ impl Moved<'_> {
         let hold = if slip_speed > 0.0 { (friction * kick / slip_speed).min(1.0) } else { 0.0 };
         let impulse = (normal * kick - slip * hold) / touch.mobility;
         let out = normal * ((gap - reached - self.step * kick).max(0.0) / touch.mobility);
-        let torque = if self.is_euler { self.torque(terms, impulse, out) } else { DVec3::ZERO };
+        let torque = if self.timing == Timing::End { self.torque(terms, impulse, out) } else { DVec3::ZERO };
         for &Term { node, weight } in terms {
             let share = weight * self.mobility(node);
             if share != 0.0 {
@@ -126,7 +144,7 @@ impl Moved<'_> {
     /// Turns the nodes of a pair so that they lose an angular momentum (kg m²/s), unless they lie too near one line for it.
     fn turn_back(&mut self, terms: &[Term], torque: DVec3) {
         /// The least determinant of an inertia tensor, relative to that of a ball with the same trace.
-        const ROUND: f64 = 0.01;
+        const ROUND: f64 = 1e-3;
         let masses = || terms.iter().map(|&Term { node, .. }| (node, self.mobility(node).recip()));
         let whole: f64 = masses().map(|(_, mass)| mass).sum();
         let centre = masses().map(|(node, mass)| self.place(node) * mass).sum::<DVec3>() / whole;
@@ -137,10 +155,14 @@ impl Moved<'_> {
             inertia += (DMat3::from_diagonal(DVec3::splat(arm.length_squared())) - outer) * mass;
         }
         let mean = (inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z) / 3.0;
-        if inertia.determinant() <= ROUND * mean * mean * mean {
+        let is_plane = torque.truncate() == DVec2::ZERO && inertia.z_axis.truncate() == DVec2::ZERO;
+        let spin = if is_plane {
+            torque / inertia.z_axis.z
+        } else if inertia.determinant() > ROUND * mean * mean * mean {
+            inertia.inverse() * torque
+        } else {
             return;
-        }
-        let spin = inertia.inverse() * torque;
+        };
         for &Term { node, .. } in terms {
             let arm = self.place(node) - centre;
             self.velocity[node as usize] -= spin.cross(arm);

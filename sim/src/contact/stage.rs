@@ -1,7 +1,7 @@
 //! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
 
 use super::pair::{Extent, Pair, Places, Seen, Touches};
-use super::rule::{Law, Moved};
+use super::rule::{Law, Moved, Timing};
 use super::surface::Surface;
 use super::{Contacts, Obstacle, Side};
 use crate::motion::Interval;
@@ -45,6 +45,8 @@ struct Known {
     pairs: Vec<Pair>,
     /// The way (m) of any two surfaces until others than the pairs may meet.
     left: f64,
+    /// The points of the surfaces in pairs.
+    placed: Vec<Vec<DVec3>>,
     touches: Touches,
     inverse_mass: Vec<f64>,
 }
@@ -88,8 +90,7 @@ pub(crate) struct End<'a> {
     pub(crate) before: Nodes<'a>,
     pub(crate) position: &'a mut [DVec3],
     pub(crate) velocity: &'a mut [DVec3],
-    /// Whether nodes moved with their velocities at the end, as by semi-implicit Euler.
-    pub(crate) is_euler: bool,
+    pub(crate) timing: Timing,
 }
 
 impl Stage {
@@ -156,14 +157,9 @@ impl Stage {
         }))
     }
 
-    /// Forgets where everything was.
-    pub(crate) fn forget(&mut self) {
-        *self.known.get_mut().unwrap_or_else(PoisonError::into_inner) = Known::default();
-    }
-
     /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, which stay as they are.
     pub(crate) fn resolve(&self, end: End<'_>, held: impl Iterator<Item = usize>) {
-        let End { interval, before, position, velocity, is_euler } = end;
+        let End { interval, before, position, velocity, timing } = end;
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let known = &mut *known;
         self.place_obstacles(interval, &mut known.obstacles);
@@ -192,14 +188,22 @@ impl Stage {
         if !(known.left >= 4.0 * ahead) {
             known.left = self.choose(&start, ahead, &mut known.pairs);
         }
+        known.placed.resize(self.surfaces.len(), Vec::new());
+        known.placed.iter_mut().for_each(Vec::clear);
+        for surface in known.pairs.iter().flat_map(|pair| pair.of) {
+            let (points, placed) = (&self.surfaces[surface].points, &mut known.placed[surface]);
+            if placed.is_empty() {
+                placed.extend((0..points.len() as u32).map(|point| start.point(points, point)));
+            }
+        }
         let seen = Seen {
             surfaces: &self.surfaces,
             rest: Places { nodes: &self.rest, obstacles: &[] },
-            start,
+            start: &known.placed,
             end: ended,
             velocity: [before.velocity, velocity].map(|nodes| Places { nodes, obstacles: speed }),
             inverse_mass: &known.inverse_mass,
-            is_euler,
+            timing,
         };
         known.touches.clear();
         for pair in &mut known.pairs {
@@ -213,7 +217,7 @@ impl Stage {
         let Touches { of_points, of_edges, terms } = &known.touches;
         let obstacles = [&moved[..], &speed[..]];
         let inverse_mass = &known.inverse_mass[..];
-        let mut nodes = Moved { inverse_mass, position, velocity, obstacles, step: interval.step, is_euler };
+        let mut nodes = Moved { inverse_mass, position, velocity, obstacles, step: interval.step, timing };
         for touch in of_points.iter().chain(of_edges) {
             let [first, last] = touch.terms.map(|at| at as usize);
             nodes.resolve(touch, &terms[first..last]);

@@ -19,6 +19,7 @@ use self::runge_kutta::RungeKutta;
 use self::semi_implicit_euler::SemiImplicitEuler;
 use self::velocity_verlet::VelocityVerlet;
 use super::body::Body;
+use super::contact::Timing;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::model::{ElasticModel, Scratch};
 pub use super::motion::Interval;
@@ -279,9 +280,11 @@ impl Step<'_> {
     }
 
     /// Applies contact and kinematic constraints at the end of the step. `acceleration` (m/s²) is constant in the step for each node;
-    /// `None` if nodes moved at constant velocity.
+    /// `None` if nodes moved at constant velocity. The velocity at the start of a step with accelerations decides how surfaces rebound, as for
+    /// velocity Verlet.
     pub fn constrain(&self, state: &State, next: &mut State, acceleration: Option<&[DVec3]>) {
-        self.system.constrain(self.interval, state, next, acceleration);
+        let timing = if acceleration.is_some() { Timing::Start } else { Timing::End };
+        self.system.constrain(self.interval, state, next, acceleration, timing);
     }
 
     /// Ends the step of a method with several evaluations: checks the speeds, applies contact and kinematic constraints, and clears
@@ -294,7 +297,7 @@ impl Step<'_> {
         next.memory.integrator.clear();
         let change = next.velocity.iter().zip(&state.velocity);
         let mean: Vec<DVec3> = change.map(|(&after, &before)| (after - before) / self.interval.step).collect();
-        self.constrain(state, next, Some(&mean));
+        self.system.constrain(self.interval, state, next, Some(&mean), Timing::Start);
         Ok(())
     }
 

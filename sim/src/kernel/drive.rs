@@ -93,7 +93,7 @@ impl Dynamics for ByKernel {
                     (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
                 }
             };
-            let is_euler = rollback.scheme().is_euler();
+            let timing = rollback.scheme().timing();
             let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
             let end = system.interval(begin).end;
             let overlap = |span: &Range<usize>, nodes: &Range<usize>| span.start < nodes.end && nodes.start < span.end;
@@ -110,7 +110,7 @@ impl Dynamics for ByKernel {
             };
             let meet = |step: u64, before: Nodes<'_>, position: &mut [DVec3], velocity: &mut [DVec3]| {
                 let interval = system.interval(step);
-                system.meet(End { interval, before, position, velocity, is_euler }, memory);
+                system.meet(End { interval, before, position, velocity, timing }, memory);
             };
             let alone = |step: u64, at: Nodes<'_>, most: u64| {
                 // Constraints may take nodes anywhere.

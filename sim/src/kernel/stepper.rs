@@ -3,6 +3,7 @@
 
 use super::update::Stage;
 use super::{Around, Lost, Meeting};
+use crate::contact::Timing;
 use crate::crew::Crew;
 use crate::integrate::Integrator;
 use crate::integrate::composition::{self, Composition};
@@ -26,9 +27,12 @@ pub(crate) enum Scheme {
 }
 
 impl Scheme {
-    /// Whether nodes move with their velocities at the end of a step.
-    pub(crate) fn is_euler(self) -> bool {
-        matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
+    /// The velocities that matter for contact of surfaces.
+    pub(crate) fn timing(self) -> Timing {
+        match self {
+            Self::SemiImplicitEuler | Self::ExplicitEuler => Timing::End,
+            Self::VelocityVerlet | Self::Composition(_) => Timing::Start,
+        }
     }
 
     /// Whether nodes keep an acceleration from one pass to the next.
