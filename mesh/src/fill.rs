@@ -119,6 +119,9 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let (mut surface, flaws) = surface.mended();
     let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
     lattice::check(&surface, fill, side, most)?;
+    if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
+        check_joined(&surface, &flaws)?;
+    }
     surface.refine(side, most);
     let filled = match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
@@ -127,6 +130,17 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
         Fill::Tetrahedra { side } => apart::fill(surface, side, most, |part| tetrahedra::fill(part, flaws, side, most)),
     };
     filled.map(Filled::with_groups)
+}
+
+/// Refuses triangles that lie about by themselves, for which elements that end at the surface would be made in vain for a long time. Those
+/// that only miss each other's corners by little are a surface.
+fn check_joined(surface: &Surface, flaws: &Flaws) -> Result<(), FillError> {
+    let triangles = surface.triangles.len();
+    if flaws.pieces == 1 || flaws.boundary <= 2 * triangles || surface.closing_weld().is_some() {
+        return Ok(());
+    }
+    let message = format!("is {triangles} triangles in {} pieces that do not join", flaws.pieces);
+    Err(FillError::new(message, "join them in the program that made it, or fill it with cubes"))
 }
 
 impl Filled {

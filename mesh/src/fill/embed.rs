@@ -22,11 +22,8 @@ pub(super) const FAR: f64 = 0.75;
 /// Elements farther away than so many sides have nothing to do with a point.
 const VERY_FAR: f64 = 2.0;
 
-/// The most times elements are made again with more of the lattice. Scans need two, and steps grow from one to the next.
+/// The most times elements are made again with more of the lattice. Scans need two or three, and steps grow from one to the next.
 const ROUNDS: u32 = 16;
-
-/// After so many rounds without fewer places that are not carried, more of the lattice does not help.
-const PATIENCE: u32 = 3;
 
 /// An element is filled at least by this part.
 pub(super) const LEAST: f64 = 1e-3;
@@ -43,7 +40,7 @@ const CLOSE: f64 = 1e-10;
 /// elements on trial, and the part of each cube that is inside, if something is marked. While points of the surface are far from all
 /// elements, or follow elements that do not hang together by faces with those of the rest of their piece of the surface, the lattice
 /// is marked there, and has elements that may be filled in part. Where that is not enough marks go on along the surface, twice as
-/// far each time.
+/// far each time. What is lost where the lattice is marked already, and after marks have gone on, stays lost.
 ///
 /// # Errors
 /// If nothing is inside, or as `build` says.
@@ -58,7 +55,7 @@ pub(super) fn carry(
     // Shells of a closed surface may lie in each other.
     let mut inside = if lattice.is_closed() { Some(lattice.filled(flaws)?) } else { None };
     let mut touched = Vec::new();
-    let (mut round, mut is_bold, mut fewest) = (0, true, (usize::MAX, 0));
+    let (mut round, mut is_bold) = (0, true);
     while round < ROUNDS {
         let draft = build(&wide, is_bold, inside.as_ref().map(|(inside, _)| &inside[..]))?;
         let body = body(&draft.cage);
@@ -86,12 +83,6 @@ pub(super) fn carry(
             inside = Some(lattice.filled(flaws)?);
         }
         let inside = inside.as_ref().map_or(&[][..], |(inside, _)| &inside[..]);
-        // Triangles that lie about at random hang together by no elements.
-        if places.len() < fewest.0 {
-            fewest = (places.len(), round);
-        } else if round > fewest.1 + PATIENCE {
-            break;
-        }
         // What was left out may be missing.
         is_bold = !(draft.is_bold && round > 1);
         if !is_bold {
@@ -105,6 +96,9 @@ pub(super) fn carry(
                 lattice.touch(at, &mut mark);
             }
         }
+        if round > 1 && wide == before {
+            break;
+        }
         if round > 0 {
             if touched.is_empty() {
                 touched = lattice.touched(surface, inside);
@@ -116,12 +110,6 @@ pub(super) fn carry(
                 let is_new = |beside: &usize| touched[*beside] && std::mem::replace(&mut wide[*beside], most) < most;
                 front = beside.filter(is_new).collect();
             }
-        }
-        if wide == before {
-            if !draft.is_bold {
-                break;
-            }
-            is_bold = false;
         }
         round += 1;
     }
