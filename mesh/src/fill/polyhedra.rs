@@ -10,6 +10,10 @@
 //! Where the surface would be far from all elements, at its sharp corners and where the body is thinner than a cube, edges are also cut
 //! twice, and faces and cubes have nodes of their own at the farthest points of the surface in a few directions. What is thinner
 //! than a quarter of the side there is made so thick, by at most an eighth on each side.
+//!
+//! The nodes of a cut cube do not spread alike along all axes, so that the shape model, which has one constant for an element, is stiffer
+//! along some. No stiffness of elements mends that: the volumes are right, and so is the mean of the moduli along three axes. Of a bar of
+//! .26 × 1 × .26 with 10 cells they are .91, 1.18 and .91, and it hangs .84 times as low as its material lets it.
 
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::{Draft, Drafting};
