@@ -1,0 +1,75 @@
+//! Cells and groups of Gmsh.
+
+use super::{bytes_of, file, group, groups, refusal, volume, whole};
+use localshape_mesh::Format;
+use localshape_sim::Dimension;
+
+#[test]
+fn cells_and_groups_are_read_from_gmsh() {
+    let mut points = Vec::new();
+    for name in ["bar-2.2.msh", "bar-2.2-binary.msh", "bar-4.1.msh", "bar-4.1-binary.msh"] {
+        let (bytes, format) = file(name);
+        let found = volume(&bytes, format);
+        assert_eq!((found.dimension, found.turned), (Dimension::Space, 0), "{name}");
+        assert!(found.cells.iter().all(|cell| cell.len() == 4), "{name}");
+        assert!((whole(&found) - 2.0).abs() < 1e-12, "{name}: {}", whole(&found));
+        let names: Vec<&str> = found.groups.iter().map(|group| &*group.name).collect();
+        assert_eq!(names, ["bar", "both ends", "left", "surface 9"], "{name}");
+        // A box of 2 × 1 × 1 from the origin along x.
+        let at = |group: usize| found.groups[group].points.iter().map(|&point| found.points[point as usize].x);
+        assert_eq!(found.groups[0].points.len(), found.points.len(), "{name}");
+        assert!(at(1).any(|x| x == 0.0) && at(1).any(|x| x == 2.0) && at(1).all(|x| x == 0.0 || x == 2.0), "{name}");
+        assert!(at(2).all(|x| x == 0.0) && at(3).all(|x| x == 2.0), "{name}");
+        points.push(found.points.len());
+    }
+    assert!(points.windows(2).all(|pair| pair[0] == pair[1]));
+}
+
+#[test]
+fn corners_of_second_order_elements_in_a_plane_are_read() {
+    let (bytes, format) = file("sheet-4.1.msh");
+    let found = volume(&bytes, format);
+    assert_eq!((found.dimension, found.turned), (Dimension::Plane, 0));
+    assert!(found.points.iter().all(|point| point.z == 0.0), "it lies at z = 3 in the file");
+    assert!((whole(&found) - 2.0).abs() < 1e-12);
+    assert_eq!(found.groups.iter().map(|group| &*group.name).collect::<Vec<_>>(), ["left edge", "sheet"]);
+    assert!(found.groups[0].points.iter().all(|&point| found.points[point as usize].x == 0.0));
+}
+
+#[test]
+fn groups_of_partitioned_gmsh_files_are_those_of_all_partitions() {
+    let found = volume(bytes_of("partitioned-4.1.msh"), Format::Gmsh);
+    assert_eq!((found.cells.len(), groups(&found)), (6, vec![("clamped side", 4), ("soft part", 8)]));
+    assert!((whole(&found) - 6.0).abs() < 1e-12);
+    // As Gmsh has written it.
+    let found = volume(bytes_of("partitioned-4.1-binary.msh"), Format::Gmsh);
+    assert_eq!((found.cells.len(), groups(&found)), (18, vec![("clamped side", 4), ("soft part", 12)]));
+    assert!((whole(&found) - 6.0).abs() < 1e-12);
+    assert!(group(&found, "clamped side").iter().all(|at| at[0] == 0.0));
+}
+
+#[test]
+fn comments_of_gmsh_stand_before_and_between_sections() {
+    let text = String::from_utf8(bytes_of("comments-2.2.msh")).expect("text");
+    let comment = "$Comments\nof $Nodes and $Elements\n$EndComments\n";
+    for text in
+        [text.clone(), text.replace("$Nodes\n8", &format!("{comment}{comment}$Nodes\n8")), format!("{comment}{text}")]
+    {
+        let found = volume(&text, Format::Gmsh);
+        assert_eq!(groups(&found), [("a \"b\" c", 8), ("ü", 4)]);
+        assert!((whole(&found) - 6.0).abs() < 1e-12);
+    }
+    assert!(refusal("$Comments\nno end", Format::Gmsh).starts_with("ends in line 2; expected `$EndComments`"));
+}
+
+/// A negative number of a physical group stands for the other orientation of its surface.
+#[test]
+fn negative_groups_of_gmsh_keep_their_names() {
+    let text = String::from_utf8(bytes_of("partitioned-4.1.msh")).expect("text");
+    let turned = text.replace("0 0 0 0 1 3 1 7 0", "0 0 0 0 1 3 1 -7 0");
+    assert_ne!(text, turned);
+    assert_eq!(groups(&volume(turned, Format::Gmsh)), [("clamped side", 4), ("soft part", 8)]);
+    let old = String::from_utf8(bytes_of("comments-2.2.msh")).expect("text");
+    assert!(old.contains("2 2 4 2 1 1 1 1 5 7\n3 2 4 -2 1 1 1 1 7 3"), "one triangle of either sign");
+    assert_eq!(groups(&volume(old, Format::Gmsh))[1], ("ü", 4));
+}
