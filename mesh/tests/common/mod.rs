@@ -4,7 +4,7 @@
 pub mod near;
 
 use glam::DVec3;
-use localshape_mesh::Surface;
+use localshape_mesh::{Format, Limits, Mesh, Surface, read};
 
 /// A box of 12 triangles.
 pub fn block(low: DVec3, high: DVec3) -> Surface {
@@ -79,15 +79,9 @@ pub fn scan(name: &str) -> Option<Surface> {
         let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: libcgal-demo is not installed\n");
         return None;
     }
-    let text = String::from_utf8(output.stdout).ok()?;
-    let mut numbers = text.lines().filter(|line| !line.starts_with('#')).flat_map(str::split_whitespace).skip(1);
-    let mut next = move || numbers.next().unwrap().parse::<f64>().unwrap();
-    let [points, faces, _] = [next(), next(), next()].map(|count| count as usize);
-    let points = (0..points).map(|_| DVec3::new(next(), next(), next())).collect();
-    let mut triangles = Vec::new();
-    for _ in 0..faces {
-        let corners: Vec<u32> = (0..next() as usize).map(|_| next() as u32).collect();
-        triangles.extend((2..corners.len()).map(|n| [corners[0], corners[n - 1], corners[n]]));
+    // Its polygons may be concave, so that they are no fans.
+    match read(&output.stdout, Format::Off, &Limits { points: 1_000_000, corners: 8_000_000 }) {
+        Ok(Mesh::Surface(surface)) => Some(surface),
+        other => panic!("{name}: {other:?}"),
     }
-    Some(Surface { points, triangles, ..Surface::default() })
 }
