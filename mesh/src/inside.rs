@@ -10,8 +10,10 @@
 //! edges. Fans far away are lumped together (G. Barill et al., 2018).
 
 use super::Surface;
+use super::boxes::Boxes;
 use super::edges::{EdgeUse, Sets, net};
 use glam::{DVec2, DVec3};
+use localshape_sim::geometry::bounds;
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::collections::HashMap;
@@ -73,7 +75,7 @@ impl Inside {
 
     /// How many triangles are looked at on average to tell which a line crosses.
     pub(crate) fn crossed(&self) -> f64 {
-        self.columns.members.len() as f64 / self.columns.starts.len() as f64
+        self.columns.crowd()
     }
 
     /// The triangles that were added to close the surface.
@@ -146,17 +148,10 @@ impl Inside {
     }
 }
 
-/// Triangles by the place of their projection along x.
+/// Triangles, and the boxes of their projections along x.
 pub(crate) struct Columns {
     corners: Vec<[DVec3; 3]>,
-    /// The lowest y and z, and the number of bins per unit of length along each.
-    low: [f64; 2],
-    scale: [f64; 2],
-    /// Bins along y and z.
-    counts: [usize; 2],
-    /// Where the triangles of each bin begin.
-    starts: Vec<u32>,
-    members: Vec<u32>,
+    boxes: Boxes,
 }
 
 /// A triangle that a line along x crosses.
@@ -173,78 +168,30 @@ pub(crate) struct Crossing<'t> {
 impl Columns {
     pub(crate) fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let corners: Vec<_> = triangles.iter().map(|of| of.map(|point| points[point as usize])).collect();
-        let all = || corners.as_flattened().iter();
-        let low = all().copied().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
-        let high = all().copied().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
-        let mut columns =
-            Self { low: [low.y, low.z], scale: [0.0; 2], counts: [1; 2], starts: vec![], members: vec![], corners };
-        let mut along = libm::sqrt(columns.corners.len() as f64).ceil().clamp(1.0, 4096.0) as usize;
-        // Few bins if triangles are large: each lists all that overlap it.
-        loop {
-            columns.counts = [along; 2];
-            columns.scale = [high.y - low.y, high.z - low.z].map(|width| along as f64 / width.max(f64::MIN_POSITIVE));
-            let members: usize = columns
-                .corners
-                .iter()
-                .map(|of| {
-                    let [y, z] = columns.bins(of);
-                    (y[1] - y[0] + 1) * (z[1] - z[0] + 1)
-                })
-                .sum();
-            if along == 1 || members <= 8 * columns.corners.len() + 64 {
-                break;
-            }
-            along = (along / 2).max(1);
-        }
-        let mut counts = vec![0u32; along * along + 1];
-        columns.each_bin(|bin, _| counts[bin + 1] += 1);
-        for bin in 1..counts.len() {
-            counts[bin] += counts[bin - 1];
-        }
-        let mut next = counts.clone();
-        let mut members = vec![0; counts[along * along] as usize];
-        columns.each_bin(|bin, triangle| {
-            members[next[bin] as usize] = triangle;
-            next[bin] += 1;
-        });
-        Self { starts: counts, members, ..columns }
+        let flat = |corners: &[DVec3]| {
+            let (low, high) = bounds(corners);
+            (DVec3 { x: 0.0, ..low }, DVec3 { x: 0.0, ..high })
+        };
+        let (boxes, ends): (Vec<_>, _) = (corners.iter().map(|of| flat(of)).collect(), flat(corners.as_flattened()));
+        // As many cells as triangles, or fewer if these are large.
+        let extent = ends.1 - ends.0;
+        let squares: f64 = boxes.iter().map(|(low, high)| low.distance_squared(*high)).sum();
+        let square = squares.max(extent.y * extent.z) / corners.len().max(1) as f64;
+        let boxes = Boxes::new(boxes, ends, libm::sqrt(square).max(f64::MIN_POSITIVE));
+        Self { corners, boxes }
     }
 
-    fn bin(&self, axis: usize, at: f64) -> usize {
-        (((at - self.low[axis]) * self.scale[axis]) as usize).min(self.counts[axis] - 1)
-    }
-
-    /// The first and the last bin of a triangle, along y and along z.
-    fn bins(&self, corners: &[DVec3; 3]) -> [[usize; 2]; 2] {
-        let [a, b, c] = *corners;
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        [[self.bin(0, low.y), self.bin(0, high.y)], [self.bin(1, low.z), self.bin(1, high.z)]]
-    }
-
-    fn each_bin(&self, mut visit: impl FnMut(usize, u32)) {
-        for (triangle, corners) in (0..).zip(&self.corners) {
-            let [y, z] = self.bins(corners);
-            for z in z[0]..=z[1] {
-                for y in y[0]..=y[1] {
-                    visit(z * self.counts[0] + y, triangle);
-                }
-            }
-        }
+    /// How many triangles are in a cell on average.
+    fn crowd(&self) -> f64 {
+        let (sum, count) = self.boxes.in_cells().fold((0, 0), |(sum, count), all| (sum + all.len(), count + 1));
+        sum as f64 / f64::from(count)
     }
 
     /// Calls `visit` with the triangles that a line along x crosses, in their order.
     pub(crate) fn crossings<'t>(&'t self, y: f64, z: f64, mut visit: impl FnMut(Crossing<'t>)) {
-        let bin = self.bin(1, z) * self.counts[0] + self.bin(0, y);
-        for &triangle in &self.members[self.starts[bin] as usize..self.starts[bin + 1] as usize] {
+        for triangle in self.boxes.around(DVec3::new(0.0, y, z)) {
             let corners = &self.corners[triangle as usize];
             let [a, b, c] = corners;
-            if y < a.y.min(b.y).min(c.y)
-                || y > a.y.max(b.y).max(c.y)
-                || z < a.z.min(b.z).min(c.z)
-                || z > a.z.max(b.z).max(c.z)
-            {
-                continue;
-            }
             let sign = side(a, b, y, z);
             if sign != 0 && side(b, c, y, z) == sign && side(c, a, y, z) == sign {
                 visit(Crossing { triangle, sign, corners, y, z });

@@ -7,6 +7,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod boxes;
 mod edges;
 mod fill;
 mod inside;

@@ -4,9 +4,10 @@ use super::embed::pieces;
 use super::lattice::too_many;
 use super::{Cage, FillError, Filled};
 use crate::Surface;
+use crate::boxes::Boxes;
 use crate::edges::Sets;
 use glam::DVec3;
-use localshape_sim::geometry::node_volumes;
+use localshape_sim::geometry::{bounds, node_volumes};
 use localshape_sim::{Body, Solids};
 use rayon::prelude::*;
 
@@ -95,26 +96,14 @@ fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
         let (low, high) = &mut boxes[piece as usize];
         (*low, *high) = (low.min(point), high.max(point));
     }
-    // Pairs of boxes are compared that meet along the axis along which the fewest do.
-    let sorted = |axis: usize| {
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by(|&one, &other| boxes[one].0[axis].total_cmp(&boxes[other].0[axis]));
-        let end = |&one: &usize| order.partition_point(|&other| boxes[other].0[axis] <= boxes[one].1[axis]);
-        let ends: Vec<usize> = order.iter().map(end).collect();
-        let pairs: usize = (1..).zip(&ends).map(|(at, end)| end - at).sum();
-        (pairs, order, ends)
-    };
-    let [x, y, z] = [0, 1, 2].map(sorted);
-    let fewer = |one: (usize, _, _), other: (usize, _, _)| if other.0 < one.0 { other } else { one };
-    let (pairs, order, ends) = fewer(fewer(x, y), z);
-    check(count, pairs)?;
+    let mean = boxes.iter().map(|(low, high)| low.distance(*high)).sum::<f64>() / count as f64;
+    let grid = Boxes::new(boxes.clone(), bounds(&surface.points), mean.max(f64::MIN_POSITIVE));
+    check(count, grid.in_cells().map(|all| all.len() * all.len() / 2).sum())?;
     let mut sets = Sets::new(count);
-    for (at, &one) in order.iter().enumerate() {
-        let (low, high) = boxes[one];
-        for &other in &order[at + 1..ends[at]] {
-            if boxes[other].0.cmple(high).all() && boxes[other].1.cmpge(low).all() {
-                sets.join(one as u32, other as u32);
-            }
+    for all in grid.in_cells() {
+        for (at, &one) in all.iter().enumerate() {
+            let meet = all[at + 1..].iter().filter(|&&other| grid.meet(other, boxes[one as usize]));
+            meet.for_each(|&other| sets.join(one, other));
         }
     }
     let set_of: Vec<u32> = (0..count as u32).map(|piece| sets.of(piece)).collect();
@@ -143,7 +132,7 @@ fn check(pieces: usize, pairs: usize) -> Result<(), FillError> {
     if pairs <= MOST {
         return Ok(());
     }
-    let message = format!("has {pieces} pieces that overlap along each axis, too many to tell which stand apart");
+    let message = format!("has {pieces} pieces that lie about each other, too many to tell which stand apart");
     Err(FillError::new(message, "unite them in the program that made it, or fill it with cubes"))
 }
 
@@ -160,10 +149,7 @@ mod tests {
             parts(&Surface { points: points.collect(), triangles, ..Surface::default() })
         };
         let refused = pieces(50_000, 1e-6).unwrap_err();
-        assert_eq!(
-            refused.message,
-            "has 50000 pieces that overlap along each axis, too many to tell which stand apart"
-        );
+        assert_eq!(refused.message, "has 50000 pieces that lie about each other, too many to tell which stand apart");
         // Sheets go with the first.
         assert_eq!(pieces(50_000, 2.0).map(|(_, count)| count).ok(), Some(1));
     }

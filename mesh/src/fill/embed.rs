@@ -7,9 +7,10 @@
 
 use super::cuts::Lattice;
 use super::draft::Draft;
+use crate::boxes::Boxes;
 use crate::edges::Sets;
 use crate::{Cage, FillError, Flaws, Surface};
-use glam::{DMat3, DVec3, I64Vec3};
+use glam::{DMat3, DVec3};
 use localshape_sim::geometry::{around, bounds};
 use localshape_sim::{Body, ElementKind, IndexLists, Solids, Weights};
 use rayon::prelude::*;
@@ -310,26 +311,18 @@ impl Fan {
     /// What carries each point: the first element that contains it, or the first of the nearest; `None` if all are farther than
     /// so many sides.
     fn locate(&self, points: &[DVec3], side: f64, most: f64) -> Vec<Option<Place>> {
-        let (low, high) = bounds(&self.points);
         let box_of = |element: usize| {
             let corners = self.of(element).iter().flat_map(|simplex| self.corners(simplex));
             let (low, high) =
                 corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
             (low - CLOSE * side, high + CLOSE * side)
         };
-        let elements: Vec<_> = (0..self.starts.len() - 1).into_par_iter().map(box_of).collect();
-        let mut cells = Grid::new(low, high, side, elements.len());
-        cells.mark(points);
-        cells.fill(&elements);
-        let outside: Vec<_> = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
-        let mut faces = Grid::new(low, high, side, outside.len());
-        faces.fill(&outside);
+        let ends = bounds(&self.points);
+        let elements = Boxes::new((0..self.starts.len() - 1).into_par_iter().map(box_of).collect(), ends, side);
+        let outside = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
+        let faces = Boxes::new(outside, ends, side);
         let locate = |&point: &DVec3| {
-            let containing = cells.at(cells.cell(point)).iter().find_map(|&element| {
-                let (low, high) = elements[element as usize];
-                if !(point.cmpge(low).all() && point.cmple(high).all()) {
-                    return None;
-                }
+            let containing = elements.around(point).find_map(|element| {
                 self.of(element as usize).iter().find_map(|simplex| {
                     let weights = weights(self.corners(simplex), point);
                     weights.iter().all(|&weight| weight >= -CLOSE).then_some((*simplex, weights))
@@ -342,7 +335,7 @@ impl Fan {
                 let [_, a, b, c] = self.corners(&self.outside[face as usize]);
                 [a, b, c]
             };
-            let (face, distance) = faces.nearest(&outside, of_face, point, most * side)?;
+            let (face, distance) = faces.nearest(of_face, point, most * side)?;
             let simplex = self.outside[face as usize];
             let weights = weights(self.corners(&simplex), point);
             Some(Place { element: simplex.element, corners: simplex.corners, weights, distance: distance / side })
@@ -452,148 +445,6 @@ pub(super) fn weights([a, b, c, d]: [DVec3; 4], point: DVec3) -> [f64; 4] {
     volumes.map(|volume| volume / sum)
 }
 
-/// The point of a triangle that is nearest to a point.
-pub(super) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
-    let on_line = |from: DVec3, to: DVec3| {
-        let along = to - from;
-        from + along * (along.dot(point - from) / along.length_squared()).clamp(0.0, 1.0)
-    };
-    let normal = (b - a).cross(c - a);
-    let is_left = |from: DVec3, to: DVec3| normal.dot((to - from).cross(point - from)) >= 0.0;
-    if is_left(a, b) && is_left(b, c) && is_left(c, a) {
-        return point - normal * (normal.dot(point - a) / normal.length_squared());
-    }
-    let sides = [on_line(a, b), on_line(b, c), on_line(c, a)];
-    let nearer = |one: DVec3, other: DVec3| {
-        if other.distance_squared(point) < one.distance_squared(point) { other } else { one }
-    };
-    nearer(nearer(sides[0], sides[1]), sides[2])
-}
-
-/// Cells of space with the boxes that meet each.
-pub(super) struct Grid {
-    low: DVec3,
-    cell: f64,
-    cells: I64Vec3,
-    /// Cells that are filled, if not all are.
-    marked: Option<Vec<bool>>,
-    starts: Vec<usize>,
-    items: Vec<u32>,
-}
-
-impl Grid {
-    /// A grid with cells of this side, or larger ones if there were far more cells than boxes, as about a slanted rod.
-    pub(super) fn new(low: DVec3, high: DVec3, mut cell: f64, boxes: usize) -> Self {
-        let counts = |cell: f64| ((high - low) / cell).floor() + 1.0;
-        while counts(cell).element_product() > 16.0 * boxes as f64 + 65536.0 {
-            cell *= 2.0;
-        }
-        let cells = counts(cell).as_i64vec3();
-        Self { low, cell, cells, marked: None, starts: Vec::new(), items: Vec::new() }
-    }
-
-    /// Fills only cells with a point.
-    fn mark(&mut self, points: &[DVec3]) {
-        let mut marked = vec![false; self.cells.element_product() as usize];
-        for &point in points {
-            self.index(self.cell(point)).into_iter().for_each(|cell| marked[cell] = true);
-        }
-        self.marked = Some(marked);
-    }
-
-    /// Lists each box in the cells it meets, in rising order.
-    pub(super) fn fill(&mut self, boxes: &[(DVec3, DVec3)]) {
-        let mut starts = vec![0; self.cells.element_product() as usize + 1];
-        let each = |visit: &mut dyn FnMut(usize, u32)| {
-            for (item, &(low, high)) in (0u32..).zip(boxes) {
-                let (first, last) = (self.cell(low), self.cell(high));
-                for z in first.z..=last.z {
-                    for y in first.y..=last.y {
-                        for x in first.x..=last.x {
-                            let cell = self.index(I64Vec3::new(x, y, z));
-                            let is_marked = |&cell: &usize| self.marked.as_ref().is_none_or(|marked| marked[cell]);
-                            cell.filter(is_marked).into_iter().for_each(|cell| visit(cell, item));
-                        }
-                    }
-                }
-            }
-        };
-        each(&mut |cell, _| starts[cell + 1] += 1);
-        for cell in 1..starts.len() {
-            starts[cell] += starts[cell - 1];
-        }
-        let mut ends = starts.clone();
-        let mut items = vec![0; starts[starts.len() - 1]];
-        each(&mut |cell, item| {
-            items[ends[cell]] = item;
-            ends[cell] += 1;
-        });
-        (self.starts, self.items) = (starts, items);
-    }
-
-    /// The nearest of triangles, whose boxes are listed, to a point, and its distance, up to a greatest one.
-    pub(super) fn nearest(
-        &self,
-        boxes: &[(DVec3, DVec3)],
-        corners: impl Fn(u32) -> [DVec3; 3],
-        point: DVec3,
-        most: f64,
-    ) -> Option<(u32, f64)> {
-        let cell = self.cell(point);
-        let (mut best, mut nearest) = (None, most);
-        for ring in 0.. {
-            // Those in this ring are at least so far away.
-            if nearest <= (ring - 1) as f64 * self.cell {
-                break;
-            }
-            for &item in self.ring(cell, ring).flat_map(|at| self.at(at)) {
-                let (low, high) = boxes[item as usize];
-                if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
-                    continue;
-                }
-                let distance = point.distance(nearest_of(corners(item), point));
-                if distance < nearest || (distance == nearest && best.is_none_or(|best| item < best)) {
-                    (best, nearest) = (Some(item), distance);
-                }
-            }
-        }
-        Some((best?, nearest))
-    }
-
-    /// What is in the cells of a box; some of it several times.
-    pub(super) fn within(&self, low: DVec3, high: DVec3) -> impl Iterator<Item = &u32> {
-        let (low, high) = (self.cell(low), self.cell(high));
-        let rows = (low.z..=high.z).flat_map(move |z| (low.y..=high.y).map(move |y| [y, z]));
-        rows.flat_map(move |[y, z]| (low.x..=high.x).flat_map(move |x| self.at(I64Vec3::new(x, y, z))))
-    }
-
-    /// The cell of a point, which may be outside of the grid.
-    fn cell(&self, point: DVec3) -> I64Vec3 {
-        ((point - self.low) / self.cell).floor().clamp(DVec3::splat(-1e9), DVec3::splat(1e9)).as_i64vec3()
-    }
-
-    fn index(&self, cell: I64Vec3) -> Option<usize> {
-        let is_in = cell.cmpge(I64Vec3::ZERO).all() && cell.cmplt(self.cells).all();
-        is_in.then(|| ((cell.z * self.cells.y + cell.y) * self.cells.x + cell.x) as usize)
-    }
-
-    /// What is in a cell.
-    fn at(&self, cell: I64Vec3) -> &[u32] {
-        self.index(cell).map_or(&[], |cell| &self.items[self.starts[cell]..self.starts[cell + 1]])
-    }
-
-    /// The cells that are so many cells away along an axis, and no farther along others.
-    fn ring(&self, middle: I64Vec3, ring: i64) -> impl Iterator<Item = I64Vec3> {
-        let along = move || -ring..=ring;
-        let rows = along().flat_map(move |z| along().map(move |y| [y, z]));
-        rows.flat_map(move |[y, z]| {
-            let is_whole = y.abs() == ring || z.abs() == ring;
-            let step = if is_whole { 1 } else { 2 * ring as usize };
-            along().step_by(step).map(move |x| middle + I64Vec3::new(x, y, z))
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -665,29 +516,5 @@ mod tests {
         let body = body(&Cage { nodes, elements, convex: true, ..Cage::default() });
         let found = Fan::new(&body).locate(&[DVec3::new(0.95, 0.5, 0.5)], 1.0, VERY_FAR);
         assert_eq!(found[0].map(|place| place.element), Some(1));
-    }
-
-    #[test]
-    fn a_grid_has_no_more_cells_than_boxes_need() {
-        let (low, high) = (DVec3::ZERO, DVec3::splat(1e5));
-        let boxes: Vec<_> = (0..1000).map(|n| DVec3::splat(100.0 * f64::from(n))).map(|low| (low, low + 1.0)).collect();
-        let mut grid = Grid::new(low, high, 1.0, boxes.len());
-        assert!(grid.cells.element_product() < 100_000);
-        grid.fill(&boxes);
-        for (item, &(low, _)) in (0u32..).zip(&boxes) {
-            assert!(grid.at(grid.cell(low + 0.5)).contains(&item));
-        }
-        assert_eq!(Grid::new(low, DVec3::splat(40.0), 1.0, 1000).cell, 1.0);
-    }
-
-    #[test]
-    fn the_nearest_point_of_a_triangle_is_in_it_on_a_side_or_a_corner() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let nearest = |x: f64, y: f64| nearest_of(triangle, DVec3::new(x, y, 0.7));
-        assert_eq!(nearest(0.2, 0.3), DVec3::new(0.2, 0.3, 0.0));
-        assert_eq!(nearest(0.25, -2.0), DVec3::new(0.25, 0.0, 0.0));
-        assert_eq!(nearest(1.0, 1.0), DVec3::new(0.5, 0.5, 0.0));
-        assert_eq!(nearest(-1.0, -1.0), DVec3::ZERO);
-        assert_eq!(nearest(3.0, 0.5), DVec3::X);
     }
 }

@@ -2,9 +2,10 @@
 
 use super::cuts::Lattice;
 use super::draft::Draft;
-use super::embed::{Grid, nearest_of, weights};
+use super::embed::weights;
 use super::polyhedra::directions;
 use crate::Surface;
+use crate::boxes::{Boxes, nearest_of};
 use glam::DVec3;
 use localshape_sim::IndexLists;
 use localshape_sim::geometry::bounds;
@@ -34,17 +35,13 @@ const SLIGHT: f64 = 1e-3;
 struct Near<'s> {
     surface: &'s Surface,
     lattice: &'s Lattice,
-    boxes: Vec<(DVec3, DVec3)>,
-    grid: Grid,
+    boxes: Boxes,
 }
 
 impl<'s> Near<'s> {
     fn new(surface: &'s Surface, lattice: &'s Lattice) -> Self {
-        let (low, high) = bounds(&surface.points);
-        let boxes: Vec<_> = surface.triangles.iter().map(|&of| bounds(&surface.corners(of))).collect();
-        let mut grid = Grid::new(low, high, lattice.side, boxes.len());
-        grid.fill(&boxes);
-        Self { surface, lattice, boxes, grid }
+        let boxes = surface.triangles.iter().map(|&of| bounds(&surface.corners(of))).collect();
+        Self { surface, lattice, boxes: Boxes::new(boxes, bounds(&surface.points), lattice.side) }
     }
 
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
@@ -53,18 +50,14 @@ impl<'s> Near<'s> {
 
     /// The nearest point of the surface within a distance.
     fn nearest(&self, point: DVec3, most: f64) -> Option<DVec3> {
-        let (triangle, _) = self.grid.nearest(&self.boxes, |triangle| self.corners(triangle), point, most)?;
+        let (triangle, _) = self.boxes.nearest(|triangle| self.corners(triangle), point, most)?;
         Some(nearest_of(self.corners(triangle), point))
     }
 
     /// Whether the surface passes a tetrahedron.
     fn passes(&self, corners: [DVec3; 4]) -> bool {
         let (low, high) = bounds(&corners);
-        let is_near = |&&triangle: &&u32| {
-            let (from, to) = self.boxes[triangle as usize];
-            from.cmple(high).all() && to.cmpge(low).all()
-        };
-        let reaches_in = |&triangle: &u32| {
+        let reaches_in = |triangle: u32| {
             let mut polygon = self.corners(triangle).map(|corner| weights(corners, corner)).to_vec();
             for side in 0..4 {
                 let above = |at: &[f64; 4]| at[side] - SLIGHT;
@@ -84,7 +77,7 @@ impl<'s> Near<'s> {
             }
             !polygon.is_empty()
         };
-        self.grid.within(low, high).filter(is_near).any(reaches_in)
+        self.boxes.within(low, high).any(reaches_in)
     }
 }
 
