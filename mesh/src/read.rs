@@ -85,17 +85,22 @@ impl Format {
 
     /// The endings of its files, without the dot.
     pub fn endings(self) -> &'static [&'static str] {
+        self.known().0
+    }
+
+    /// The endings of its files, and a file of it in words.
+    fn known(self) -> (&'static [&'static str], &'static str) {
         match self {
-            Self::Obj => &["obj"],
-            Self::Stl => &["stl"],
-            Self::Ply => &["ply"],
-            Self::Off => &["off"],
-            Self::Gltf => &["gltf", "glb"],
-            Self::Gmsh => &["msh"],
-            Self::Vtk => &["vtk"],
-            Self::Vtu => &["vtu", "vtp"],
-            Self::Medit => &["mesh"],
-            Self::Abaqus => &["inp"],
+            Self::Obj => (&["obj"], "an OBJ file"),
+            Self::Stl => (&["stl"], "an STL file"),
+            Self::Ply => (&["ply"], "a PLY file"),
+            Self::Off => (&["off"], "an OFF file"),
+            Self::Gltf => (&["gltf", "glb"], "a glTF file"),
+            Self::Gmsh => (&["msh"], "a Gmsh file"),
+            Self::Vtk => (&["vtk"], "a legacy VTK file"),
+            Self::Vtu => (&["vtu", "vtp"], "a VTU file"),
+            Self::Medit => (&["mesh"], "a Medit file"),
+            Self::Abaqus => (&["inp"], "an Abaqus file"),
         }
     }
 

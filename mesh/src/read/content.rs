@@ -20,30 +20,14 @@ pub(super) fn check(bytes: &[u8], format: Format) -> Result<(), ReadError> {
         Some(Found::Other(what, help)) => return Err(ReadError::new(format!("is {what}, and no mesh file"), help)),
         _ => return Ok(()),
     };
-    let message = format!("has the content of {}, but the ending of {}", name(other), name(format));
+    let message = format!("has the content of {}, but the ending of {}", other.known().1, format.known().1);
     Err(ReadError::new(message, format!("name it `.{}`", other.endings()[0])))
-}
-
-/// A format with its article.
-pub(super) fn name(format: Format) -> &'static str {
-    match format {
-        Format::Obj => "an OBJ file",
-        Format::Stl => "an STL file",
-        Format::Ply => "a PLY file",
-        Format::Off => "an OFF file",
-        Format::Gltf => "a glTF file",
-        Format::Gmsh => "a Gmsh file",
-        Format::Vtk => "a legacy VTK file",
-        Format::Vtu => "a VTU file",
-        Format::Medit => "a Medit file",
-        Format::Abaqus => "an Abaqus file",
-    }
 }
 
 /// The error of a file that does not begin as its format does.
 pub(super) fn no_beginning(bytes: &[u8], format: Format, expected: &str) -> ReadError {
     let line = bytes.split(|&byte| byte == b'\n' || byte == b'\r').next().unwrap_or_default();
-    let message = format!("begins with {}; expected {expected}, as {} does", quoted(line), name(format));
+    let message = format!("begins with {}; expected {expected}, as {} does", quoted(line), format.known().1);
     ReadError::new(message, "check that the ending of its name is that of its format")
 }
 

@@ -77,7 +77,8 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
             }
             b"property" => {
                 let element = elements.last_mut().ok_or_else(|| wrong(text, "`element` before it"))?;
-                let scalar = |word: &[u8]| scalar(word).ok_or_else(|| wrong(word, "a type, such as `float` or `int`"));
+                let scalar =
+                    |word: &[u8]| Scalar::named(word).ok_or_else(|| wrong(word, "a type, such as `float` or `int`"));
                 let (length, kind) = match line.word() {
                     b"list" => (Some(scalar(line.word())?), line.word()),
                     word => (None, word),
@@ -96,23 +97,6 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
             _ => {}
         }
     }
-}
-
-fn scalar(name: &[u8]) -> Option<Scalar> {
-    Some(match name {
-        b"char" | b"int8" => Scalar::I8,
-        b"uchar" | b"uint8" => Scalar::U8,
-        b"short" | b"int16" => Scalar::I16,
-        b"ushort" | b"uint16" => Scalar::U16,
-        b"int" | b"int32" => Scalar::I32,
-        b"uint" | b"uint32" => Scalar::U32,
-        // No standard has these, but large meshes do.
-        b"int64" => Scalar::I64,
-        b"uint64" => Scalar::U64,
-        b"float" | b"float32" => Scalar::F32,
-        b"double" | b"float64" => Scalar::F64,
-        _ => return None,
-    })
 }
 
 fn skip(property: &Property<'_>, source: &mut Source<'_>) -> Result<(), ReadError> {

@@ -61,9 +61,7 @@ fn entries<T>(
     let mut reader = Reader::from_reader(bytes);
     let (mut found, mut is_begun) = (Vec::new(), false);
     loop {
-        let event = reader.read_event().map_err(|error| {
-            ReadError::new(format!("is no sound XML {}: {error}", place(reader.error_position())), DAMAGED)
-        })?;
+        let event = reader.read_event().map_err(|error| unsound(&place(reader.error_position()), &error))?;
         match event {
             Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref().as_bytes() == b"VTKFile" => {
                 is_begun = true;
@@ -97,49 +95,14 @@ fn required(tag: &BytesStart<'_>, name: &str, place: &dyn Fn() -> String) -> Res
 
 /// An attribute without its escapes.
 pub(super) fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, ReadError> {
-    let damaged = |error: &dyn std::fmt::Display| ReadError::new(format!("is no sound XML: {error}"), DAMAGED);
-    let Some(attribute) = tag.try_get_attribute(name).map_err(|error| damaged(&error))? else { return Ok(None) };
-    quick_xml::escape::unescape(&attribute.value).map(|text| Some(text.into_owned())).map_err(|error| damaged(&error))
+    let Some(attribute) = tag.try_get_attribute(name).map_err(|error| unsound("", &error))? else { return Ok(None) };
+    quick_xml::escape::unescape(&attribute.value)
+        .map(|text| Some(text.into_owned()))
+        .map_err(|error| unsound("", &error))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn list(sets: &str) -> Result<Vec<Listed>, String> {
-        let text =
-            format!("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\"><Collection>{sets}</Collection></VTKFile>");
-        read_list(text.as_bytes()).map_err(|error| error.message)
-    }
-
-    #[test]
-    fn files_are_listed_with_their_times() {
-        let found = list(
-            "<DataSet timestep='0' part='0' file='a &lt;b&gt;/c_0.vtu'/><DataSet timestep='0.5' file='d.vtu'></DataSet>",
-        );
-        let expected = [(0.0, "a <b>/c_0.vtu", Some("0")), (0.5, "d.vtu", None)].map(|(time, file, part)| Listed {
-            time,
-            file: file.to_owned(),
-            part: part.map(str::to_owned),
-        });
-        assert_eq!(found.unwrap(), expected);
-    }
-
-    #[test]
-    fn mistakes_are_told_with_their_places() {
-        for (sets, message) in [
-            ("", "lists no file"),
-            ("<DataSet file='a.vtu'/>", "without `timestep`"),
-            ("<DataSet timestep='0'/>", "without `file`"),
-            ("<DataSet timestep='soon' file='a.vtu'/>", "has the time `soon`"),
-            ("<DataSet timestep='0' file='a'", "is no sound XML"),
-        ] {
-            let error = list(sets).unwrap_err();
-            assert!(error.contains(message), "{sets}: {error}");
-        }
-        assert!(read_list(b"").unwrap_err().message.contains("no `<VTKFile>`"));
-        assert!(
-            read_list(b"<VTKFile type='UnstructuredGrid'/>").unwrap_err().message.contains("expected `Collection`")
-        );
-    }
+/// The error of a file that is no XML, at a place if it is known.
+pub(super) fn unsound(place: &str, error: &dyn std::fmt::Display) -> ReadError {
+    let space = if place.is_empty() { "" } else { " " };
+    ReadError::damaged(format!("is no sound XML{space}{place}: {error}"))
 }

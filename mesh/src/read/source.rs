@@ -32,6 +32,25 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
+    /// The type of a name in PLY or in VTK's files, in capital letters or not.
+    pub(super) fn named(name: &[u8]) -> Option<Self> {
+        Some(match &*name.to_ascii_lowercase() {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" | b"unsigned_char" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" | b"unsigned_short" => Self::U16,
+            // Indices have 32 bits in VTK's legacy format.
+            b"int" | b"int32" | b"vtkidtype" => Self::I32,
+            b"uint" | b"uint32" | b"unsigned_int" => Self::U32,
+            // No standard of PLY has these, but large meshes do.
+            b"long" | b"int64" | b"vtktypeint64" => Self::I64,
+            b"unsigned_long" | b"uint64" | b"vtktypeuint64" => Self::U64,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
     /// The number of bytes.
     pub(super) fn size(self) -> usize {
         match self {

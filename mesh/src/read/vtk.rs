@@ -1,7 +1,7 @@
 //! VTK's legacy format: unstructured grids and polygons, as text or big-endian numbers, in its old layout and that of version 5
 //! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html>).
 
-use super::cells::Builder;
+use super::cells::{Builder, too_many};
 use super::source::{Coding, DAMAGED, Scalar, Source, integer};
 use super::{Cells, Format, Limits, ReadError, arrays, content, kinds};
 use glam::DVec3;
@@ -226,21 +226,7 @@ impl Reader<'_, '_> {
     /// Reads the name of a type.
     fn scalar(&mut self) -> Result<Scalar, ReadError> {
         let word = self.source.word();
-        let scalar = match &*word.to_ascii_lowercase() {
-            b"unsigned_char" => Scalar::U8,
-            b"char" => Scalar::I8,
-            b"unsigned_short" => Scalar::U16,
-            b"short" => Scalar::I16,
-            b"unsigned_int" => Scalar::U32,
-            // Indices have 32 bits in this format.
-            b"int" | b"vtkidtype" => Scalar::I32,
-            b"unsigned_long" | b"vtktypeuint64" => Scalar::U64,
-            b"long" | b"vtktypeint64" => Scalar::I64,
-            b"float" => Scalar::F32,
-            b"double" => Scalar::F64,
-            _ => return Err(self.source.wrong(word, "a type of numbers, such as `float`")),
-        };
-        Ok(scalar)
+        Scalar::named(word).ok_or_else(|| self.source.wrong(word, "a type of numbers, such as `float`"))
     }
 
     /// Reads lists of points in either layout, and the place where they begin.
@@ -249,11 +235,7 @@ impl Reader<'_, '_> {
         let [first, second] = [(); 2].map(|()| self.source.count(Scalar::I64, "a number of cells"));
         let (first, second) = (first?, second?);
         if first.max(second) > most {
-            let message = format!("has cells with {} numbers; at most {most} are read", first.max(second));
-            return Err(ReadError::new(
-                message,
-                "make the mesh coarser, with a decimation of the program that wrote it",
-            ));
+            return Err(too_many(&format!("cells with {}", first.max(second)), "numbers", most as usize));
         }
         let mut lists = Lists::default();
         if self.source.peek().eq_ignore_ascii_case(b"OFFSETS") {

@@ -2,7 +2,7 @@
 //! packed by zlib or not (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>).
 
 use super::cells::{Builder, Ghost};
-use super::pvd::attribute;
+use super::pvd::{attribute, unsound};
 use super::source::{CUT, Coding, DAMAGED, Scalar, Source, quoted};
 use super::{Cells, Format, Limits, ReadError, arrays, content, kinds};
 use base64::Engine;
@@ -128,10 +128,7 @@ fn pieces(
     let (mut is_begun, mut is_ended) = (false, false);
     loop {
         let before = reader.buffer_position();
-        let event = reader.read_event().map_err(|error| {
-            let message = format!("is no sound XML {}: {error}", place(reader.error_position()));
-            ReadError::new(message, DAMAGED)
-        })?;
+        let event = reader.read_event().map_err(|error| unsound(&place(reader.error_position()), &error))?;
         let is_empty = matches!(event, Event::Empty(_));
         match event {
             Event::Start(tag) | Event::Empty(tag) => {
@@ -255,22 +252,9 @@ fn columns(tag: &BytesStart<'_>, name: &[u8], place: impl Fn() -> String) -> Res
 }
 
 fn scalar(name: &str) -> Result<Scalar, ReadError> {
-    Ok(match name {
-        "Int8" => Scalar::I8,
-        "UInt8" => Scalar::U8,
-        "Int16" => Scalar::I16,
-        "UInt16" => Scalar::U16,
-        "Int32" => Scalar::I32,
-        "UInt32" => Scalar::U32,
-        "Int64" => Scalar::I64,
-        "UInt64" => Scalar::U64,
-        "Float32" => Scalar::F32,
-        "Float64" => Scalar::F64,
-        _ => {
-            let message =
-                format!("has an array of the type {}; expected `Float64` or `Int64`", quoted(name.as_bytes()));
-            return Err(ReadError::new(message, DAMAGED));
-        }
+    Scalar::named(name.as_bytes()).ok_or_else(|| {
+        let message = format!("has an array of the type {}; expected `Float64` or `Int64`", quoted(name.as_bytes()));
+        ReadError::new(message, DAMAGED)
     })
 }
 

@@ -6,6 +6,7 @@ mod cube;
 mod displacements;
 mod gltf;
 mod gmsh;
+mod lists;
 mod medit;
 mod numbers;
 mod polygons;
