@@ -215,7 +215,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Skips numbers.
     fn skip(&mut self, count: u64, scalar: Scalar) -> Result<(), ReadError> {
         self.source.coding = self.coding;
         self.source.skip(count, scalar, "a number of an array")?;
@@ -223,7 +222,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Reads the name of a type.
     fn scalar(&mut self) -> Result<Scalar, ReadError> {
         let word = self.source.word();
         Scalar::named(word).ok_or_else(|| self.source.wrong(word, "a type of numbers, such as `float`"))
@@ -309,9 +307,11 @@ impl Reader<'_, '_> {
 
     fn cell(&mut self, kind: i64, list: &[i64], place: usize) -> Result<(), ReadError> {
         self.starts.push(self.builder.cells.kinds.len());
-        let mut corner = |index: i64| self.builder.corner(index, place, &self.source);
+        let mut corners = |list: &[i64]| -> Result<Vec<u32>, ReadError> {
+            list.iter().map(|&index| self.builder.corner(index, place, &self.source)).collect()
+        };
         if kind != 42 {
-            let corners = list.iter().map(|&index| corner(index)).collect::<Result<Vec<_>, _>>()?;
+            let corners = corners(list)?;
             return kinds::add(kind, &corners, &mut self.builder);
         }
         // The number of faces, and for each the number of its points and the points.
@@ -322,13 +322,12 @@ impl Reader<'_, '_> {
             let Some(count) = count else {
                 return Err(ReadError::new("has a polyhedron whose faces have more points than it lists", DAMAGED));
             };
-            faces.push(after[..count].iter().map(|&index| corner(index)).collect::<Result<Vec<_>, _>>()?);
+            faces.push(corners(&after[..count])?);
             rest = &after[count..];
         }
         kinds::polyhedron(&faces, &[], &mut self.builder)
     }
 
-    /// Reads the arrays of a field.
     fn fields(&mut self) -> Result<(), ReadError> {
         self.source.word();
         for _ in 0..self.source.count(Scalar::I64, "the number of arrays")? {

@@ -103,7 +103,6 @@ fn appended(bytes: &[u8]) -> Result<(&[u8], bool), ReadError> {
     Ok((&bytes[(begin + 1).max(tag + 1)..], is_raw))
 }
 
-/// Reads the pieces of a grid.
 fn pieces(
     text: &[u8],
     is_cut: bool,
@@ -175,7 +174,6 @@ fn pieces(
     }
 }
 
-/// Reads the attributes of a file.
 fn header(tag: &BytesStart<'_>, layout: &mut Layout<'_>) -> Result<(), ReadError> {
     let kind = attribute(tag, "type")?.unwrap_or_default();
     if !matches!(&*kind, "UnstructuredGrid" | "PolyData") {
@@ -264,7 +262,6 @@ fn vector(array: &Array, mut next: impl FnMut() -> Result<f64, ReadError>) -> Re
 }
 
 impl Layout<'_> {
-    /// Reads the arrays of a piece.
     fn piece(&self, piece: &Piece, builder: &mut Builder<'_>, limits: &Limits) -> Result<(), ReadError> {
         let first = builder.points() as i64;
         if let Some(((_, name), array)) = piece.iter().find(|((parent, _), _)| parent == b"Points") {
@@ -312,6 +309,9 @@ impl Layout<'_> {
             members: integers(b"Cells", b"polyhedron_to_faces")?,
             cells: integers(b"Cells", b"polyhedron_offsets")?,
         };
+        let corners = |list: &[i64]| -> Result<Vec<u32>, ReadError> {
+            list.iter().map(|&index| corner(index, first, count as i64)).collect()
+        };
         // Where the cells begin that each cell of the file becomes.
         let mut starts = Vec::new();
         for &(parent, kind) in &ELEMENTS[1..] {
@@ -336,19 +336,13 @@ impl Layout<'_> {
                 let list = &connectivity[start..end];
                 start = end;
                 starts.push(builder.cells.kinds.len());
-                let corner = |builder: &mut Builder<'_>, index: i64| corner(builder, index, first);
                 if kind == 42 {
-                    let mut faces = Vec::new();
-                    let found = polyhedra.faces_of(cell)?;
-                    self.spend(found.iter().map(|face| 1 + face.len()).sum())?;
-                    for face in found {
-                        faces.push(face.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?);
-                    }
-                    let listed = list.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?;
-                    kinds::polyhedron(&faces, &listed, builder)?;
+                    let faces = polyhedra.faces_of(cell)?;
+                    self.spend(faces.iter().map(|face| 1 + face.len()).sum())?;
+                    let faces = faces.into_iter().map(corners).collect::<Result<Vec<_>, _>>()?;
+                    kinds::polyhedron(&faces, &corners(list)?, builder)?;
                 } else {
-                    let corners = list.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?;
-                    kinds::add(kind, &corners, builder)?;
+                    kinds::add(kind, &corners(list)?, builder)?;
                 }
             }
         }
@@ -357,7 +351,6 @@ impl Layout<'_> {
         Ok(())
     }
 
-    /// Counts numbers.
     fn spend(&self, count: usize) -> Result<(), ReadError> {
         match self.left.get().checked_sub(count) {
             Some(left) => {
@@ -373,7 +366,6 @@ impl Layout<'_> {
         ReadError::new(message, COARSER)
     }
 
-    /// The integers of an array.
     fn integers(&self, array: &Array, name: &[u8], most: usize) -> Result<Vec<i64>, ReadError> {
         let mut numbers = Vec::new();
         self.each(array, name, most, |source| {
@@ -502,17 +494,15 @@ fn too_long(name: &[u8], most: usize) -> ReadError {
     ReadError::new(message, COARSER)
 }
 
-/// A corner of a piece whose points begin at `first`.
-fn corner(builder: &mut Builder<'_>, index: i64, first: i64) -> Result<u32, ReadError> {
-    let count = builder.points() as i64 - first;
-    if !(0..count).contains(&index) {
-        let message = match count {
-            0 => format!("names point {index}, but has no points"),
-            _ => format!("names point {index}, but has points 0 to {}", count - 1),
-        };
-        return Err(ReadError::new(message, DAMAGED));
+/// A corner of a piece with so many points, which begin at `first`.
+fn corner(index: i64, first: i64, count: i64) -> Result<u32, ReadError> {
+    if (0..count).contains(&index) {
+        return Ok((index + first) as u32);
     }
-    Ok((index + first) as u32)
+    Err(ReadError::damaged(match count {
+        0 => format!("names point {index}, but has no points"),
+        _ => format!("names point {index}, but has points 0 to {}", count - 1),
+    }))
 }
 
 /// The first bytes of Base64, at least so many if they are there. Padding ends a part, after which another one begins.
