@@ -50,7 +50,6 @@ impl Boxes {
         self.starts.windows(2).map(|ends| &self.items[ends[0]..ends[1]])
     }
 
-    /// Whether two boxes meet.
     pub(crate) fn meet(&self, one: u32, (low, high): (DVec3, DVec3)) -> bool {
         let own = self.all[one as usize];
         own.0.cmple(high).all() && own.1.cmpge(low).all()
@@ -100,7 +99,6 @@ impl Boxes {
         is_in.then(|| ((cell.z * self.counts.y + cell.y) * self.counts.x + cell.x) as usize)
     }
 
-    /// What is in a cell.
     fn at(&self, cell: I64Vec3) -> &[u32] {
         self.index(cell).map_or(&[], |cell| &self.items[self.starts[cell]..self.starts[cell + 1]])
     }
@@ -123,7 +121,6 @@ impl Boxes {
     }
 }
 
-/// The point of a triangle that is nearest to a point.
 pub(crate) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
     let on_line = |from: DVec3, to: DVec3| {
         let along = to - from;

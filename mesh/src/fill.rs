@@ -132,6 +132,11 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     filled.map(Filled::with_groups)
 }
 
+/// The least and the greatest of numbers.
+fn range(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
+    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| (low.min(number), high.max(number)))
+}
+
 /// Refuses triangles that lie about by themselves, for which elements that end at the surface would be made in vain for a long time. Those
 /// that only miss each other's corners by little are a surface.
 fn check_joined(surface: &Surface, flaws: &Flaws) -> Result<(), FillError> {

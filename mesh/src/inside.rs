@@ -30,7 +30,6 @@ pub(crate) struct Inside {
 /// Points in rows along x.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
-    /// The first point.
     pub(crate) first: DVec3,
     /// The distance between neighbours.
     pub(crate) side: f64,
@@ -39,7 +38,6 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Coordinates of points along an axis.
     fn at(&self, axis: usize, index: usize) -> f64 {
         self.first[axis] + self.side * index as f64
     }
@@ -83,7 +81,6 @@ impl Inside {
         &self.caps
     }
 
-    /// Whether a point is inside.
     pub(crate) fn contains(&self, point: DVec3) -> bool {
         self.is_inside(self.around(point), point)
     }
@@ -476,7 +473,6 @@ fn half_angle(triangle: &[DVec3; 3], point: DVec3) -> Option<DVec2> {
 mod tests {
     use super::*;
 
-    /// Pseudo-random numbers from 0 to 1.
     struct Noise(u64);
 
     impl Noise {

@@ -63,7 +63,6 @@ pub struct Measures {
 }
 
 impl Surface {
-    /// The positions of the corners of a triangle.
     pub(crate) fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|point| self.points[point as usize])
     }
@@ -417,7 +416,6 @@ impl Enclosed {
         self.volume.abs() <= 1e-9 * self.area * self.area.sqrt()
     }
 
-    /// Whether it has an inside.
     pub(crate) fn is_solid(&self) -> bool {
         self.volume > 0.0 && !self.is_sheet()
     }

@@ -1,6 +1,6 @@
 //! Parts of a surface that stand apart, each filled by itself.
 
-use super::embed::pieces;
+use super::embed::{body, pieces};
 use super::lattice::too_many;
 use super::{Cage, FillError, Filled};
 use crate::Surface;
@@ -8,7 +8,6 @@ use crate::boxes::Boxes;
 use crate::edges::Sets;
 use glam::DVec3;
 use localshape_sim::geometry::{bounds, node_volumes};
-use localshape_sim::{Body, Solids};
 use rayon::prelude::*;
 
 /// Fills each part of a surface by itself, so that no element reaches from one into another.
@@ -72,14 +71,10 @@ pub(super) fn fill(
 
 /// The volume of each node of a part (m³), together that inside its surface where this is closed.
 fn volumes(part: &Filled) -> Vec<f64> {
-    let Cage { nodes, elements, filled, convex, overlap, .. } = &part.cage;
-    let solids = if *convex { Solids::Convex } else { Solids::Ordered };
-    let body = Body::builder(nodes.clone()).elements(elements.clone()).solids(solids).fill(filled.clone()).build();
-    let body = body.expect("a cage has sound elements");
-    let (mut volumes, measures) = (node_volumes(&body), part.surface.measures());
+    let (mut volumes, measures) = (node_volumes(&body(&part.cage)), part.surface.measures());
     if measures.closed {
         let found: f64 = volumes.iter().sum();
-        volumes.iter_mut().for_each(|volume| *volume *= (measures.volume - overlap) / found);
+        volumes.iter_mut().for_each(|volume| *volume *= (measures.volume - part.cage.overlap) / found);
     }
     volumes
 }

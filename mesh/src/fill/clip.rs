@@ -1,6 +1,7 @@
 //! Triangles cut at the planes of a lattice, in units of the lattice.
 
 use super::lattice::{Cell, Lattice};
+use super::range;
 use crate::Surface;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,11 +22,6 @@ impl Polygon {
 
     pub(super) fn corners(&self) -> &[DVec3] {
         &self.corners[..self.count]
-    }
-
-    fn range(&self, axis: usize) -> (f64, f64) {
-        let all = || self.corners().iter().map(|corner| corner[axis]);
-        (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max))
     }
 
     /// The part on one side of a plane: where `sign · coordinate ≥ sign · at`.
@@ -75,7 +71,7 @@ impl Polygon {
         if self.count < 3 {
             return;
         }
-        let (low, high) = self.range(axis);
+        let (low, high) = range(self.corners().iter().map(|corner| corner[axis]));
         if low == high && low.fract() == 0.0 {
             let cell = if normal[axis] > 0.0 { low - 1.0 } else { low };
             return visit(cell.clamp(0.0, lattice.counts[axis] as f64 - 1.0) as u32, *self);
@@ -138,7 +134,6 @@ pub(super) fn volume(corners: &[DVec3], low: DVec3) -> f64 {
 /// The part of a triangle in a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// The number of the cell.
     pub(super) cell: u64,
     pub(super) triangle: u32,
     /// The volume between the piece and the lower face of the cell across x, positive where the inside is there.
@@ -161,7 +156,6 @@ pub(super) fn cut(corners: [DVec3; 3], lattice: &Lattice, mut visit: impl FnMut(
     });
 }
 
-/// The parts of a triangle.
 fn pieces_of(triangle: u32, corners: [DVec3; 3], lattice: &Lattice) -> Vec<Piece> {
     let mut pieces = Vec::new();
     cut(corners, lattice, |cell, polygon| {

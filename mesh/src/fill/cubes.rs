@@ -1,8 +1,9 @@
 //! Cubes of a lattice.
 
 use super::clip::{self, Piece};
+use super::draft::Nodes;
 use super::graded::{self, Graded};
-use super::lattice::{CORNERS, Cell, JOINED, Lattice, Nodes, corner, too_many};
+use super::lattice::{CORNERS, Cell, JOINED, Lattice, corner, too_many};
 use super::parts::{Parted, Parts, Patches, Scene};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
@@ -16,7 +17,6 @@ const LEAST: f64 = 1e-9;
 /// Points along each side of a cell at which it is tried whether they are inside, where a surface is open.
 const SAMPLES: usize = 4;
 
-/// Fills a surface with cubes of a side, or coarser ones away from the surface.
 pub(super) fn fill(
     mut surface: Surface,
     flaws: Flaws,
@@ -45,7 +45,7 @@ pub(super) fn fill(
         return refuse(cells.len() / joined);
     }
     let parts = scene.parts(&cells);
-    let mut nodes = Nodes::new(lattice, parts.corners.len());
+    let mut nodes = Nodes::new(parts.corners.len());
     let mut volumes = None;
     let (elements, filled, weights) = if is_graded {
         let Graded { elements, filled, element_of, volumes: own } = graded::joined(&scene, &parts, &mut nodes);
@@ -57,7 +57,8 @@ pub(super) fn fill(
         for (copy, full) in parts.copies.iter().enumerate() {
             let cell = lattice.cell(full.cell);
             elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|at| {
-                nodes.of(parts.corners[8 * copy + at], [0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis]))
+                let place = || lattice.place(corner([0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis])));
+                nodes.of(parts.corners[8 * copy + at] as usize, place)
             }));
         }
         let weights = weights(&scene, &parts, &homes, |copy| &elements[copy]);
@@ -148,7 +149,6 @@ pub(super) fn bounded(part: f64) -> f64 {
     if part > 1.0 - 1e-12 { 1.0 } else { part.max(LEAST) }
 }
 
-/// The cells of one row.
 fn row_cells<'s>(scene: &Scene<'s>, row: usize, capped: &'s [Piece]) -> Vec<(Parted, Option<Patches<'s>>)> {
     let Scene { inside, lattice, pieces, .. } = *scene;
     let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
@@ -200,7 +200,6 @@ fn sampled(inside: &Inside, grid: &Grid, key: usize) -> f64 {
     number as f64 / points.len() as f64
 }
 
-/// The error for a surface without an inside.
 pub(super) fn no_inside(flaws: &Flaws) -> FillError {
     let (message, help) = match flaws.boundary + flaws.inconsistent {
         0 => ("has no inside: its volume is zero".to_owned(), "use a surface with a thickness"),

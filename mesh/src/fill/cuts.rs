@@ -61,6 +61,18 @@ impl Lattice {
         Ok(Self { origin: lattice.origin - side, side, cubes: counts.as_ivec3(), has_middles, surface: scaled, inside })
     }
 
+    /// The ends of the edge of a cut.
+    pub(super) fn ends(&self, cuts: &Cuts, cut: usize) -> [usize; 2] {
+        let (from, edge) = cuts.edge(cut);
+        [from, self.index(self.point(from) + EDGES[edge])]
+    }
+
+    /// The place of a cut at a part of the way along its edge, in halves of the side from the origin.
+    pub(super) fn along(&self, cuts: &Cuts, cut: usize, part: f64) -> DVec3 {
+        let (from, edge) = cuts.edge(cut);
+        self.point(from).as_dvec3() + part * EDGES[edge].as_dvec3()
+    }
+
     /// The position (m) of a place in halves of the side from the origin.
     pub(super) fn place(&self, at: DVec3) -> DVec3 {
         self.origin + 0.5 * self.side * at
@@ -122,7 +134,6 @@ impl Lattice {
         self.inside.contains(self.halves(at))
     }
 
-    /// Whether each point is inside.
     pub(super) fn inside(&self) -> Vec<bool> {
         let counts = (self.cubes + 1).as_usizevec3().to_array();
         let mut inside = self.inside.grid(&Grid { first: DVec3::ZERO, side: 2.0, counts });
@@ -159,7 +170,6 @@ impl Lattice {
         Ok((filled, cubes::overlap(&scene, &cells) * self.side * self.side * self.side))
     }
 
-    /// Whether the surface is closed.
     pub(super) fn is_closed(&self) -> bool {
         self.inside.caps().is_empty()
     }

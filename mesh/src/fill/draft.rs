@@ -17,8 +17,7 @@ pub(super) struct Drafting {
     most: usize,
     /// The number of elements, of which at most `most` are kept.
     count: usize,
-    /// The number of each point as a node, or [`u32::MAX`].
-    numbers: Vec<u32>,
+    nodes: Nodes,
     draft: Draft,
 }
 
@@ -26,7 +25,7 @@ impl Drafting {
     /// No elements between so many points.
     pub(super) fn new(convex: bool, points: usize, most: usize) -> Self {
         let draft = Draft { cage: Cage { convex, ..Cage::default() }, is_wide: Vec::new(), is_bold: false };
-        Self { most, count: 0, numbers: vec![u32::MAX; points], draft }
+        Self { most, count: 0, nodes: Nodes::new(points), draft }
     }
 
     /// Appends an element between points, which are at places (m).
@@ -35,21 +34,38 @@ impl Drafting {
         if self.count > self.most {
             return;
         }
-        let Draft { cage: Cage { nodes, elements, .. }, is_wide: all, .. } = &mut self.draft;
-        let mut element = Vec::with_capacity(corners.len());
-        for &corner in corners {
-            if self.numbers[corner] == u32::MAX {
-                self.numbers[corner] = nodes.len() as u32;
-                nodes.push(place(corner));
-            }
-            element.push(self.numbers[corner]);
-        }
-        elements.push(&element);
-        all.push(is_wide);
+        let element: Vec<u32> = corners.iter().map(|&corner| self.nodes.of(corner, || place(corner))).collect();
+        self.draft.cage.elements.push(&element);
+        self.draft.is_wide.push(is_wide);
     }
 
     /// The elements, or their number if there are more than allowed.
-    pub(super) fn finished(self) -> Result<Draft, usize> {
+    pub(super) fn finished(mut self) -> Result<Draft, usize> {
+        self.draft.cage.nodes = self.nodes.places;
         if self.count > self.most { Err(self.count) } else { Ok(self.draft) }
+    }
+}
+
+/// Points numbered as nodes in the order in which they are met.
+pub(super) struct Nodes {
+    /// The number of each point, or [`u32::MAX`].
+    numbers: Vec<u32>,
+    /// Where each node is (m).
+    pub(super) places: Vec<DVec3>,
+}
+
+impl Nodes {
+    pub(super) fn new(points: usize) -> Self {
+        Self { numbers: vec![u32::MAX; points], places: Vec::new() }
+    }
+
+    /// The node of a point, which is at a place (m).
+    pub(super) fn of(&mut self, point: usize, place: impl FnOnce() -> DVec3) -> u32 {
+        let number = &mut self.numbers[point];
+        if *number == u32::MAX {
+            *number = self.places.len() as u32;
+            self.places.push(place());
+        }
+        *number
     }
 }

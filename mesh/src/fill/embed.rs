@@ -6,7 +6,7 @@
 //! of their nodes, as convex ones are.
 
 use super::cuts::Lattice;
-use super::draft::Draft;
+use super::draft::{Draft, Nodes};
 use crate::boxes::Boxes;
 use crate::edges::Sets;
 use crate::{Cage, FillError, Flaws, Surface};
@@ -118,14 +118,13 @@ pub(super) fn carry(
     Err(FillError::new(message, "use a smaller side, or fill it with cubes"))
 }
 
-/// No number.
 const NONE: u32 = u32::MAX;
 
 /// The elements of a cage with their faces. Where the first try has found none, it is one node.
 pub(super) fn body(cage: &Cage) -> Body {
     let solids = if cage.convex { Solids::Convex } else { Solids::Ordered };
     let nodes = if cage.nodes.is_empty() { vec![DVec3::ZERO] } else { cage.nodes.clone() };
-    let body = Body::builder(nodes).elements(cage.elements.clone()).solids(solids).build();
+    let body = Body::builder(nodes).elements(cage.elements.clone()).solids(solids).fill(cage.filled.clone()).build();
     body.expect("a cage has sound elements")
 }
 
@@ -178,33 +177,24 @@ impl Hung {
     fn finished(&self, cage: Cage, filled: Option<Vec<f64>>, fan: &Fan, found: &[Option<Place>]) -> (Cage, Weights) {
         let mut is_kept = vec![false; self.parts.len()];
         self.carriers.iter().filter(|&&part| part != NONE).for_each(|&part| is_kept[part as usize] = true);
-        let mut numbers = vec![NONE; cage.nodes.len()];
-        let mut kept = Cage { filled: filled.is_some().then(Vec::new), convex: cage.convex, ..Cage::default() };
-        let elements = cage.elements.iter().enumerate();
-        for (element, nodes) in elements.filter(|&(element, _)| is_kept[self.parts[element] as usize]) {
-            let number = |&node: &u32| {
-                if numbers[node as usize] == NONE {
-                    numbers[node as usize] = kept.nodes.len() as u32;
-                    kept.nodes.push(cage.nodes[node as usize]);
-                }
-                numbers[node as usize]
-            };
-            kept.elements.push(&nodes.iter().map(number).collect::<Vec<_>>());
-            if let (Some(kept), Some(filled)) = (&mut kept.filled, &filled) {
-                kept.push(filled[element]);
-            }
-        }
+        let kept: Vec<usize> = (0..self.parts.len()).filter(|&element| is_kept[self.parts[element] as usize]).collect();
+        let mut nodes = Nodes::new(cage.nodes.len());
+        let mut renamed = |all: &[u32]| -> Vec<u32> {
+            all.iter().map(|&node| nodes.of(node as usize, || cage.nodes[node as usize])).collect()
+        };
+        let mut elements = IndexLists::default();
+        kept.iter().for_each(|&element| elements.push(&renamed(&cage.elements[element])));
+        let filled = filled.map(|filled| kept.iter().map(|&element| filled[element]).collect());
         let spread = |place: &Place| {
             let is_gentle = place.weights.iter().all(|weight| weight.abs() < GENTLE);
             let is_simple = fan.of(place.element as usize).len() == 1;
-            let (nodes, weights) = if is_gentle || is_simple { fan.spread(place) } else { fan.affine(place) };
-            (nodes.into_iter().map(|node| numbers[node as usize]).collect::<Vec<_>>(), weights)
+            if is_gentle || is_simple { fan.spread(place) } else { fan.affine(place) }
         };
         let mut weights = Weights::default();
         for (nodes, own) in found.par_iter().flatten().map(spread).collect::<Vec<_>>() {
-            weights.push(&nodes, &own);
+            weights.push(&renamed(&nodes), &own);
         }
-        (kept, weights)
+        (Cage { nodes: nodes.places, elements, filled, convex: cage.convex, ..Cage::default() }, weights)
     }
 }
 
@@ -291,7 +281,6 @@ impl Fan {
         fan
     }
 
-    /// Adds the mean of nodes.
     fn mean(&mut self, nodes: &[u32]) -> u32 {
         let sum: DVec3 = nodes.iter().map(|&node| self.points[node as usize]).sum();
         self.means.push(nodes);

@@ -7,8 +7,10 @@
 //! Cubes are not joined again: their mass is in their corners, so that the moment of inertia would be too large by a part that does not
 //! fall with the size of cells. Hanging nodes carry what they would carry among cells, so that the centre of mass stays.
 
-use super::lattice::{CORNERS, Cell, Lattice, Nodes};
+use super::draft::Nodes;
+use super::lattice::{CORNERS, Cell, Lattice, corner};
 use super::parts::{Parts, Scene};
+use glam::DVec3;
 use localshape_sim::IndexLists;
 use std::collections::HashMap;
 
@@ -20,6 +22,13 @@ struct Cube {
     side: u32,
     /// The copy of the lowest cell.
     copy: u32,
+}
+
+impl Cube {
+    /// A place (m) in halves of the side from the lowest corner.
+    fn place(&self, lattice: &Lattice, at: Cell) -> DVec3 {
+        lattice.place(corner([0, 1, 2].map(|axis| self.low[axis] + at[axis] * self.side / 2)))
+    }
 }
 
 /// Elements made of copies, the part of each that is inside, and the element of each copy that touches the surface.
@@ -54,7 +63,7 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
         let mut push = |at: Cell| {
             let set = set(cube, at);
             if is_node[set as usize] {
-                own.push(nodes.of(set, [0, 1, 2].map(|axis| cube.low[axis] + at[axis] * cube.side / 2)));
+                own.push(nodes.of(set as usize, || cube.place(lattice, at)));
             }
         };
         for corner in CORNERS {
@@ -72,8 +81,7 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
     graded.volumes = vec![0.0; nodes.places.len()];
     for cube in &cubes {
         let mut add = |at: Cell, volume: f64| {
-            let place = [0, 1, 2].map(|axis| cube.low[axis] + at[axis] * cube.side / 2);
-            graded.volumes[nodes.of(set(cube, at), place) as usize] += volume;
+            graded.volumes[nodes.of(set(cube, at) as usize, || cube.place(lattice, at)) as usize] += volume;
         };
         if cube.side == 1 {
             let own = parts.copies[cube.copy as usize].filled / 8.0;

@@ -220,34 +220,9 @@ pub(super) fn corner(cell: Cell) -> DVec3 {
 pub(super) const CORNERS: [Cell; 8] =
     [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
 
-/// Nodes at corners of a lattice, numbered as they are met.
-pub(super) struct Nodes {
-    lattice: Lattice,
-    /// The node of each set of corners.
-    numbers: Vec<u32>,
-    pub(super) places: Vec<DVec3>,
-}
-
-impl Nodes {
-    pub(super) fn new(lattice: Lattice, sets: usize) -> Self {
-        Self { lattice, numbers: vec![u32::MAX; sets], places: Vec::new() }
-    }
-
-    /// The node of a set of corners, which are at this place of the lattice.
-    pub(super) fn of(&mut self, set: u32, place: Cell) -> u32 {
-        let number = &mut self.numbers[set as usize];
-        if *number == u32::MAX {
-            *number = self.places.len() as u32;
-            self.places.push(self.lattice.place(corner(place)));
-        }
-        *number
-    }
-}
-
 /// A cell with a part of the inside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Full {
-    /// The number of the cell.
     pub(super) cell: u64,
     /// The part of it that is inside.
     pub(super) filled: f64,

@@ -18,6 +18,7 @@
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::{Draft, Drafting};
 use super::lattice::too_many;
+use super::range;
 use super::{FillError, Filled, clip, embed};
 use crate::{Flaws, Surface};
 use glam::{DVec3, IVec3};
@@ -65,8 +66,7 @@ fn places(lattice: &Lattice, is_inside: &[bool], cuts: &mut Cuts) -> Vec<Where> 
     let side = |&inside: &bool| if inside { Where::Inside } else { Where::Outside };
     let mut places: Vec<Where> = is_inside.iter().map(side).collect();
     for cut in 0..cuts.parts.len() {
-        let (from, edge) = cuts.edge(cut);
-        let to = lattice.index(lattice.point(from) + EDGES[edge]);
+        let [from, to] = lattice.ends(cuts, cut);
         if is_inside[from] == is_inside[to] {
             continue;
         }
@@ -273,8 +273,7 @@ impl<'l> Cutting<'l> {
     fn position(&self, node: usize) -> DVec3 {
         let Some(cut) = node.checked_sub(self.lattice.len()) else { return self.lattice.point(node).as_dvec3() };
         let Some(inner) = cut.checked_sub(self.cuts.parts.len()) else {
-            let (from, edge) = self.cuts.edge(cut);
-            return self.lattice.point(from).as_dvec3() + self.part(cut) * EDGES[edge].as_dvec3();
+            return self.lattice.along(self.cuts, cut, self.part(cut));
         };
         self.inner.nodes[inner]
     }
@@ -282,8 +281,7 @@ impl<'l> Cutting<'l> {
     /// The part of the way along its edge at which a cut is. Two cuts of an edge are moved apart if they are close to each other.
     fn part(&self, cut: usize) -> f64 {
         let part = self.cuts.parts[cut];
-        let (from, edge) = self.cuts.edge(cut);
-        let ends = [from, self.lattice.index(self.lattice.point(from) + EDGES[edge])];
+        let ((from, edge), ends) = (self.cuts.edge(cut), self.lattice.ends(self.cuts, cut));
         if let [Where::Outside, Where::Outside] = ends.map(|end| self.places[end])
             && let [Some(first), Some(last)] = [self.cuts.find(from, edge), self.cuts.last(from, edge)]
         {
@@ -345,11 +343,6 @@ impl<'l> Cutting<'l> {
         };
         all.len() > 3 && (is_alone || spread >= 4.0 * SMALL) && !directions(None).any(is_flat)
     }
-}
-
-/// The least and the greatest of numbers.
-fn range(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
-    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| (low.min(number), high.max(number)))
 }
 
 /// Directions to all sides, or in the plane across an axis: along axes first, then between two of them, then between three.

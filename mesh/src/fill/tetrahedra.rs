@@ -66,8 +66,7 @@ impl<'l> Stuffing<'l> {
         // The cuts near to each point: its place in lists, the cut, and the distance in halves of the side.
         let mut near = Vec::new();
         for cut in 0..cuts.parts.len() {
-            let (from, edge) = cuts.edge(cut);
-            let to = lattice.index(lattice.point(from) + EDGES[edge]);
+            let ([from, to], (_, edge)) = (lattice.ends(&cuts, cut), cuts.edge(cut));
             let length = EDGES[edge].as_dvec3().length();
             for (end, other, part) in [(from, to, cuts.parts[cut]), (to, from, 1.0 - cuts.parts[cut])] {
                 if part < NEAR[usize::from(edge >= AXES)] {
@@ -179,10 +178,7 @@ impl<'l> Stuffing<'l> {
     fn ends(&self, corner: Corner) -> [usize; 2] {
         match corner.node.checked_sub(self.places.len()) {
             None => [corner.node; 2],
-            Some(cut) => {
-                let (from, edge) = self.cuts.edge(cut);
-                [from, self.lattice.index(self.lattice.point(from) + EDGES[edge])]
-            }
+            Some(cut) => self.lattice.ends(&self.cuts, cut),
         }
     }
 
@@ -190,10 +186,7 @@ impl<'l> Stuffing<'l> {
     fn position(&self, node: usize) -> DVec3 {
         match node.checked_sub(self.places.len()) {
             None => self.lattice.point(node).as_dvec3(),
-            Some(cut) => {
-                let (from, edge) = self.cuts.edge(cut);
-                self.lattice.point(from).as_dvec3() + self.cuts.parts[cut] * EDGES[edge].as_dvec3()
-            }
+            Some(cut) => self.lattice.along(&self.cuts, cut, self.cuts.parts[cut]),
         }
     }
 
@@ -202,7 +195,6 @@ impl<'l> Stuffing<'l> {
         cosines(corners.map(|corner| self.position(corner.node))).into_iter().fold(-1.0, f64::max)
     }
 
-    /// The cut between a point inside and one outside.
     fn cut_of(&self, inside: IVec3, outside: IVec3) -> Corner {
         let between = outside - inside;
         let is_forth = EDGES.contains(&between);

@@ -3,6 +3,7 @@
 //! Inside, the winding number is above 0. A shell in another one has it on both of its sides and bounds nothing. Where shells cross,
 //! their triangles are divided, so that each fragment has one winding number on either side.
 
+use super::range;
 use super::sight::Facet;
 use crate::inside::Inside;
 use glam::DVec3;
@@ -107,15 +108,14 @@ impl Facet {
     }
 
     /// The least and the greatest height of points.
-    fn heights(&self, points: &[DVec3]) -> [f64; 2] {
-        let heights = || points.iter().map(|&point| self.height(point));
-        [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
+    fn heights(&self, points: &[DVec3]) -> (f64, f64) {
+        range(points.iter().map(|&point| self.height(point)))
     }
 
     /// Whether each of two facets meets the plane of the other.
     fn meets(&self, other: &Self) -> bool {
         [(self, other), (other, self)].into_iter().all(|(one, other)| {
-            let [low, high] = one.heights(other.piece.corners());
+            let (low, high) = one.heights(other.piece.corners());
             low <= BESIDE && high >= -BESIDE
         })
     }
@@ -133,7 +133,7 @@ impl Facet {
 
     /// The two parts of a polygon in front of the facet's plane and behind it, or all of it if it does not reach this facet in its box.
     fn divide(&self, polygon: Vec<DVec3>, own: (DVec3, DVec3)) -> Vec<Vec<DVec3>> {
-        let [low, high] = self.heights(&polygon);
+        let (low, high) = self.heights(&polygon);
         if low > -BESIDE || high < BESIDE || !overlap(bounds(&polygon), own) {
             return vec![polygon];
         }

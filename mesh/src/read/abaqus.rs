@@ -77,7 +77,6 @@ fn capitals(text: &str) -> String {
     text.split_whitespace().collect::<String>().to_uppercase()
 }
 
-/// A line with a keyword.
 struct Keyword<'b> {
     line: Source<'b>,
     /// Its name in capitals.
@@ -240,7 +239,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Reads a set of nodes or of elements.
     fn set(&mut self, kind: usize, keyword: &Keyword<'_>) -> Result<(), ReadError> {
         let name = keyword.needed(["NSET", "ELSET"][kind])?;
         let missing = |what: &str, name: &str, field: &Source<'_>| {

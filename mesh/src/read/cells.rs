@@ -130,7 +130,6 @@ impl<'l> Builder<'l> {
         Self { cells, ghosts, groups, numbered, set_names, grouped, limits, highest, lost, names, named }
     }
 
-    /// The number of points so far.
     pub(super) fn points(&self) -> usize {
         self.cells.points.len()
     }
@@ -187,7 +186,6 @@ impl<'l> Builder<'l> {
         Ok(corner)
     }
 
-    /// Adds a cell.
     pub(super) fn cell(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
         let most = self.limits.corners.min(u32::MAX as usize - 1);
         if corners.is_empty() {
@@ -221,7 +219,6 @@ impl<'l> Builder<'l> {
         }
     }
 
-    /// Adds a strip of triangles.
     pub(super) fn strip(&mut self, corners: &[u32]) -> Result<(), ReadError> {
         for (at, triangle) in corners.windows(3).enumerate() {
             let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
@@ -507,7 +504,6 @@ impl Cells {
         Volume { dimension, points, places, solids, cells, groups, turned, notes: self.notes }
     }
 
-    /// The volume in space of all cells that have one.
     fn solids(self) -> Result<Volume, ReadError> {
         let hulls =
             |kind: CellKind, corners: &[u32]| kind == CellKind::Polyhedron && matches!(corners.len(), 5 | 6 | 8);
@@ -526,7 +522,6 @@ impl Cells {
         parts.volume(self, solids)
     }
 
-    /// The volume in the plane of all faces.
     fn polygons(mut self) -> Result<Volume, ReadError> {
         let mut parts = Parts::new(Dimension::Plane, self.kinds.len());
         self.points.iter_mut().for_each(|point| point.z = 0.0);

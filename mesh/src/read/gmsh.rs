@@ -102,7 +102,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Reads the end of a section.
     fn end(&mut self, section: &[u8]) -> Result<(), ReadError> {
         let word = self.source.word();
         let expected = [b"$End", section].concat();
@@ -270,7 +269,6 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Reads the nodes of an element.
     fn element(&mut self, kind: Kind, scalar: Scalar, dimension: i64, groups: &[i64]) -> Result<(), ReadError> {
         let mut corners = [0; 8];
         for at in 0..kind.nodes {

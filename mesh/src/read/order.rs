@@ -105,7 +105,6 @@ impl Parts {
     }
 }
 
-/// Turns a cell over.
 fn turn(kind: ElementKind, cell: &mut [u32]) {
     match kind {
         ElementKind::Tetrahedron => cell.swap(1, 2),

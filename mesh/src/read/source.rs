@@ -5,7 +5,6 @@ use glam::DVec3;
 
 /// The remedy for a file that ends early.
 pub(super) const CUT: &str = "the file is incomplete: copy, download or write it again";
-/// The remedy for damage.
 pub(super) const DAMAGED: &str = "the file is damaged: copy, download or write it again";
 
 /// How numbers are written.
@@ -51,7 +50,6 @@ impl Scalar {
         })
     }
 
-    /// The number of bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -71,7 +69,6 @@ pub(super) struct Source<'b> {
     pub(super) at: usize,
     /// The end of what is read: of the file, or of a line.
     end: usize,
-    /// How numbers are written.
     pub(super) coding: Coding,
 }
 
@@ -86,12 +83,10 @@ impl<'b> Source<'b> {
         Self { bytes, at, end: bytes.len(), coding: Coding::Text }
     }
 
-    /// A part of a text.
     pub(super) fn part(bytes: &'b [u8], start: usize, end: usize) -> Self {
         Self { bytes, at: start, end, coding: Coding::Text }
     }
 
-    /// What is left.
     pub(super) fn rest(&self) -> &'b [u8] {
         &self.bytes[self.at..self.end]
     }
@@ -181,7 +176,6 @@ impl<'b> Source<'b> {
         parts.enumerate().filter(|(_, part)| !part.rest().trim_ascii().is_empty())
     }
 
-    /// So many bytes.
     pub(super) fn take(&mut self, count: usize, expected: &str) -> Result<&'b [u8], ReadError> {
         let rest = self.rest();
         if count > rest.len() {
@@ -299,13 +293,11 @@ impl<'b> Source<'b> {
         if word.is_empty() { self.ends(expected) } else { self.found(&quoted(word), self.at - word.len(), expected) }
     }
 
-    /// The error of something found at a place.
     pub(super) fn found(&self, found: &str, at: usize, expected: &str) -> ReadError {
         let found = if found.starts_with('`') { found.to_owned() } else { format!("`{found}`") };
         ReadError::new(format!("has {found} {}; expected {expected}", self.place(at)), DAMAGED)
     }
 
-    /// The error of an end.
     pub(super) fn ends(&self, expected: &str) -> ReadError {
         if self.end < self.bytes.len() {
             let place = self.place(self.end.saturating_sub(1));
@@ -334,7 +326,6 @@ fn is_no_number(word: &[u8]) -> bool {
     matches!(unsigned, b"nan" | b"inf" | b"infinity" | [b'1', b'.', b'#', ..] | [b'n', b'a', b'n', b'(', ..])
 }
 
-/// An integer as text.
 pub(super) fn integer(word: &[u8]) -> Option<i64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }

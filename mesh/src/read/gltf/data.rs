@@ -11,7 +11,6 @@ use gltf::buffer::{Source as Data, View};
 use gltf::{Accessor, Document};
 use std::borrow::Cow;
 
-/// The lists of a file.
 pub(super) struct Lists<'b> {
     buffers: Vec<Cow<'b, [u8]>>,
     pub(super) limits: &'b Limits,
@@ -34,7 +33,6 @@ impl<'b> Lists<'b> {
         Ok(Self { buffers, limits, left: (limits.points.saturating_add(limits.corners)).saturating_mul(NUMBERS) })
     }
 
-    /// The vectors of a list.
     pub(super) fn vectors(&mut self, accessor: &Accessor<'_>) -> Result<Vec<DVec3>, ReadError> {
         let numbers = self.numbers(accessor, 3, self.limits.points)?;
         Ok(numbers.chunks_exact(3).map(DVec3::from_slice).collect())
@@ -101,7 +99,6 @@ impl<'b> Lists<'b> {
         Ok(all)
     }
 
-    /// The numbers of a part of a buffer.
     fn rows(
         &self,
         view: &View<'_>,
@@ -123,7 +120,6 @@ impl<'b> Lists<'b> {
     }
 }
 
-/// The number of some bytes of its type.
 fn number(bytes: &[u8], kind: DataType) -> f64 {
     let [a, b, c, d] = std::array::from_fn(|byte| bytes.get(byte).copied().unwrap_or(0));
     match kind {

@@ -13,7 +13,6 @@ use std::collections::BTreeSet;
 /// The structure of a file, and the binary data of a `.glb`.
 type Parts<'b> = (Document, Option<Cow<'b, [u8]>>);
 
-/// Reads the structure, and checks it.
 pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
     /// The length of the header of a `.glb`, which the length in it includes.
     const HEADER: u32 = 12;
