@@ -181,7 +181,7 @@ impl Reel for Folder {
 }
 
 impl Folder {
-    /// Reads the metadata of frames in a folder: of the requested ones up to the last one there, or of all. Frames are
+    /// Reads the labels of frames in a folder: of the requested ones up to the last one there, or of all. Frames are
     /// scaled to a width (px), if it is given. Those of another program follow each other at a rate (1/s).
     fn open(
         path: &Path,
@@ -189,74 +189,19 @@ impl Folder {
         width: Option<u32>,
         rate: Option<f64>,
     ) -> Result<Self, Failure> {
-        let name = path.display();
-        match path.metadata() {
-            Ok(found) if found.is_dir() => {}
-            Ok(_) => {
-                bail!("{name} is not a folder; expected one with frames of `localshape render`");
+        let (files, rate) = chosen(path, asked, rate)?;
+        let (mut moments, mut first): (Vec<(u64, f64)>, _) = (Vec::new(), None);
+        for (place, (number, file)) in files.iter().enumerate() {
+            let label = Label::read(file, (*number, place), rate)?;
+            let last = moments.last().map(|(_, time)| *time);
+            let before = name_of(&files[place.saturating_sub(1)].1);
+            if let Some(misfit) = label.misfit(*number, (first.as_ref().unwrap_or(&label), last), &before) {
+                bail!("{} {misfit}", file.display());
             }
-            Err(error) => {
-                bail!("{name} cannot be read: {error}; expected a folder with frames of `localshape render`");
-            }
+            moments.push((rate.map_or(*number, |_| place as u64), label.time));
+            first.get_or_insert(label);
         }
-        let own = frame_files(path)?;
-        let is_own = !own.is_empty();
-        let (mut files, rate) =
-            if is_own { (own, None) } else { others(path, rate).map(|(files, rate)| (files, Some(rate)))? };
-        if let Some(wanted) = asked(files.last().map_or(0, |(last, _)| *last)) {
-            let wanted = wanted.map_err(|message| Failure::usage(format!("frames of {name}: {message}")))?;
-            if let Some(missing) =
-                wanted.iter().find(|number| files.binary_search_by_key(number, |(number, _)| number).is_err())
-            {
-                let missing = if is_own { frame_file_name(*missing) } else { format!("frame {missing}") };
-                bail!("frames of {name}: there is no {missing}");
-            }
-            files.retain(|(number, _)| wanted.binary_search(number).is_ok());
-        } else if let Some(stride) = files.get(1).map(|(second, _)| second - files[0].0)
-            && let Some(pair) = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != stride)
-        {
-            let [before, after] = [&pair[0], &pair[1]].map(|(_, file)| name_of(file));
-            bail!(
-                "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; make the missing \
-                 frames, or choose frames with --frames"
-            );
-        }
-        let mut moments: Vec<(u64, f64)> = Vec::new();
-        let mut first = None;
-        for (at, (number, file)) in files.iter().enumerate() {
-            let found = match rate {
-                Some(rate) => picture_size(file)?.map(|size| (size, *number, at as f64 / rate, Vec::new(), Vec::new())),
-                None => read_tags(file)?.and_then(|(size, tags)| match tags.shows {
-                    Shown::Frame { frame, time } => Some((size, frame, time, tags.scenes, tags.states)),
-                    _ => None,
-                }),
-            };
-            let Some((size, frame, time, scenes, states)) = found else {
-                let what =
-                    if is_own { "frame of `localshape render`: it does not name its scene" } else { "PNG picture" };
-                bail!("{} is damaged, or is not a {what}", file.display());
-            };
-            let runs: Vec<String> = states.into_iter().map(|(_, run)| run).collect();
-            let (own, all_scenes, all_runs) = first.get_or_insert_with(|| (size, scenes.clone(), runs.clone()));
-            let before = name_of(&files[at.saturating_sub(1)].1);
-            let unlike = if frame != *number {
-                format!("shows frame {frame}; was it renamed?")
-            } else if size != *own {
-                let [[w, h], [w2, h2]] = [size, *own];
-                format!("has {w}×{h} pixels, {before} has {w2}×{h2}; make them in one size")
-            } else if scenes != *all_scenes {
-                format!("shows a different scene than {before}; expected frames of one scene")
-            } else if runs != *all_runs {
-                format!("shows the runs {}, {before} {}", quoted(&runs), quoted(all_runs))
-            } else if moments.last().is_some_and(|(_, last)| time <= *last) {
-                format!("is at {time} s, not after {before}")
-            } else {
-                moments.push((rate.map_or(*number, |_| at as u64), time));
-                continue;
-            };
-            bail!("{} {unlike}", file.display());
-        }
-        let (own, scenes, _) = first.expect("at least one frame");
+        let Label { size: own, scenes, .. } = first.expect("at least one frame");
         let height = |width: u32| (f64::from(own[1]) * f64::from(width) / f64::from(own[0])).round().max(1.0) as u32;
         let size = width.map_or(own, |width| [width, height(width)]);
         if size[1] > 16_384 {
@@ -264,6 +209,96 @@ impl Folder {
         }
         Ok(Self { moments, paths: files.into_iter().map(|(_, file)| file).collect(), scenes, own, size })
     }
+}
+
+/// What the file of a frame says of it.
+struct Label {
+    size: [u32; 2],
+    frame: u64,
+    /// Time (s).
+    time: f64,
+    scenes: Vec<String>,
+    runs: Vec<String>,
+}
+
+impl Label {
+    /// Reads the file with a number and a place among others. Frames of another program follow each other at a rate (1/s).
+    fn read(file: &Path, (frame, place): (u64, usize), rate: Option<f64>) -> Result<Self, Failure> {
+        let (found, what) = match rate {
+            Some(rate) => {
+                let (time, scenes, runs) = (place as f64 / rate, Vec::new(), Vec::new());
+                (picture_size(file)?.map(|size| Self { size, frame, time, scenes, runs }), "PNG picture")
+            }
+            None => {
+                let label = |(size, tags): (_, Tags)| match tags.shows {
+                    Shown::Frame { frame, time } => {
+                        let runs = tags.states.into_iter().map(|(_, run)| run).collect();
+                        Some(Self { size, frame, time, scenes: tags.scenes, runs })
+                    }
+                    Shown::Figure(_) => None,
+                };
+                (read_tags(file)?.and_then(label), "frame of `localshape render`: it does not name its scene")
+            }
+        };
+        found.ok_or_else(|| Failure::usage(format!("{} is damaged, or is not a {what}", file.display())))
+    }
+
+    /// Why the file with a number does not continue the first frame and the last time (s) so far, in words; the file before
+    /// has a name.
+    fn misfit(&self, number: u64, (first, last): (&Self, Option<f64>), before: &str) -> Option<String> {
+        let [[w, h], [w2, h2]] = [self.size, first.size];
+        Some(match () {
+            () if self.frame != number => format!("shows frame {}; was it renamed?", self.frame),
+            () if self.size != first.size => {
+                format!("has {w}×{h} pixels, {before} has {w2}×{h2}; make them in one size")
+            }
+            () if self.scenes != first.scenes => {
+                format!("shows a different scene than {before}; expected frames of one scene")
+            }
+            () if self.runs != first.runs => {
+                format!("shows the runs {}, {before} {}", quoted(&self.runs), quoted(&first.runs))
+            }
+            () if last.is_some_and(|last| self.time <= last) => format!("is at {} s, not after {before}", self.time),
+            () => return None,
+        })
+    }
+}
+
+/// The frames to show among those in a folder, by their numbers, and the rate (1/s) of those of another program.
+fn chosen(
+    path: &Path,
+    asked: impl FnOnce(u64) -> Option<Result<Vec<u64>, String>>,
+    rate: Option<f64>,
+) -> Result<(Vec<(u64, PathBuf)>, Option<f64>), Failure> {
+    let name = path.display();
+    match path.metadata() {
+        Ok(found) if found.is_dir() => {}
+        Ok(_) => bail!("{name} is not a folder; expected one with frames of `localshape render`"),
+        Err(error) => bail!("{name} cannot be read: {error}; expected a folder with frames of `localshape render`"),
+    }
+    let own = frame_files(path)?;
+    let (mut files, rate) = match own.is_empty() {
+        false => (own, None),
+        true => others(path, rate).map(|(files, rate)| (files, Some(rate)))?,
+    };
+    if let Some(wanted) = asked(files.last().map_or(0, |(last, _)| *last)) {
+        let wanted = wanted.map_err(|message| Failure::usage(format!("frames of {name}: {message}")))?;
+        let is_missing = |number: &&u64| files.binary_search_by_key(*number, |(number, _)| *number).is_err();
+        if let Some(&missing) = wanted.iter().find(is_missing) {
+            let missing = if rate.is_none() { frame_file_name(missing) } else { format!("frame {missing}") };
+            bail!("frames of {name}: there is no {missing}");
+        }
+        files.retain(|(number, _)| wanted.binary_search(number).is_ok());
+    } else if let Some(stride) = files.get(1).map(|(second, _)| second - files[0].0)
+        && let Some(pair) = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != stride)
+    {
+        let [before, after] = [&pair[0], &pair[1]].map(|(_, file)| name_of(file));
+        bail!(
+            "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; make the missing \
+             frames, or choose frames with --frames"
+        );
+    }
+    Ok((files, rate))
 }
 
 /// The numbered PNG files of another program in a folder, and their rate (1/s), which is to be given.

@@ -110,7 +110,7 @@ fn record(
     let result = begin().and_then(|(mut folder, pictures, export)| {
         let times = Timings::default();
         let checkpoint = folder.take_checkpoint();
-        let recording = Recording {
+        let session = Session {
             scene: &scene,
             runs: runs.clone(),
             frames: frames.clone(),
@@ -120,7 +120,7 @@ fn record(
             sound: Vec::new(),
             times,
         };
-        recording.run(pool, options, (pictures, export), stored, checkpoint)
+        session.run(pool, options, (pictures, export), stored, checkpoint)
     });
     if result.is_err() {
         summary.outcome = Outcome::Failed;
@@ -135,8 +135,8 @@ pub(super) fn merge(document: &mut Value, more: Value) {
     }
 }
 
-/// One scene on its way.
-struct Recording<'a> {
+/// A scene whose results are being made.
+struct Session<'a> {
     scene: &'a Scene,
     runs: Vec<usize>,
     frames: Vec<u64>,
@@ -148,7 +148,7 @@ struct Recording<'a> {
     times: Timings,
 }
 
-impl<'a> Recording<'a> {
+impl<'a> Session<'a> {
     /// Makes all frames, or those after a checkpoint. After an error, the results until then are finished and kept.
     fn run(
         mut self,
@@ -159,14 +159,8 @@ impl<'a> Recording<'a> {
         checkpoint: Option<Checkpoint>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
-        let (folder, scene) = (self.folder.path(), self.scene);
         if let Some(found) = &checkpoint {
-            let taken = self.frames.get(..found.progress.taken).unwrap_or_default();
-            let wrong = pictures.as_mut().map_or(Ok(None), |pictures| pictures.keep(taken))?;
-            if let Some(wrong) = wrong.map_or_else(|| export.wrong(taken), |wrong| Ok(Some(wrong)))? {
-                let what = format!("counts on {wrong}").into();
-                return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
-            }
+            self.check_kept(found.progress.taken, pictures.as_deref_mut(), &export)?;
         }
         let (progress, rows, course) = match checkpoint {
             Some(Checkpoint { progress, causes, extremes, rows, course, .. }) => {
@@ -177,9 +171,9 @@ impl<'a> Recording<'a> {
             }
             None => (None, None, None),
         };
-        let is_shard = self.folder.is_shard();
+        let (folder, scene) = (self.folder.path(), self.scene);
         let diagnostics = match rows {
-            _ if is_shard => None,
+            _ if self.folder.is_shard() => None,
             Some(rows) => {
                 let resumed = DiagnosticsWriter::resume(folder, scene, rows);
                 Some(resumed.map_err(|error| self.unusable(&error))?)
@@ -198,15 +192,39 @@ impl<'a> Recording<'a> {
 
         let mut results = Results { diagnostics, states, export, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
-        let Results { diagnostics, mut states, export, pictures, .. } = results;
-        if let Some(states) = &mut states {
-            (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
+        for place in 0..self.runs.len() {
+            let last_fit = simulation.frames.last_fit(place);
+            results.states.iter_mut().for_each(|states| states.set_last_fit(place, last_fit));
         }
+        let result = self.finish(made, results, options.states);
+        let of_pool = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
+        self.times.simulate.cpu = of_pool.map(|pool| pool + self.times.simulate.cpu.unwrap_or(0.0));
+        self.times.total = total.spent();
+        self.conclude(result)
+    }
 
+    /// Refuses a checkpoint if one of the pictures and exported files of its frames has changed.
+    fn check_kept(
+        &self,
+        taken: usize,
+        pictures: Option<&mut (dyn Pictures + '_)>,
+        export: &Export<'_>,
+    ) -> Result<(), Failure> {
+        let taken = self.frames.get(..taken).unwrap_or_default();
+        let wrong = pictures.map_or(Ok(None), |pictures| pictures.keep(taken))?;
+        let Some(wrong) = wrong.map_or_else(|| export.wrong(taken), |wrong| Ok(Some(wrong)))? else { return Ok(()) };
+        let what = format!("counts on {wrong}").into();
+        Err(OutputError::Checkpoint { path: self.folder.path().to_owned(), what }.into())
+    }
+
+    /// Finishes all files but the summary, which gets their names.
+    fn finish(&mut self, made: Result<(), Failure>, results: Results<'_>, keeps: bool) -> Result<(), Failure> {
+        let Results { diagnostics, mut states, export, pictures, .. } = results;
         let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
         let recorded = diagnostics.map(DiagnosticsWriter::finish);
-        let exported = export.finish((!is_shard).then_some(self.summary.frames.recorded), states.as_mut());
-        let kept = states.filter(|_| options.states).map(StatesWriter::finish);
+        let of_shards = self.folder.is_shard();
+        let exported = export.finish((!of_shards).then_some(self.summary.frames.recorded), states.as_mut());
+        let kept = states.filter(|_| keeps).map(StatesWriter::finish);
         let files = &self.folder.contents().0.files;
         self.summary.files = [
             (DIAGNOSTICS_FILE, matches!(recorded, Some(Ok(())))),
@@ -219,12 +237,14 @@ impl<'a> Recording<'a> {
         .chain(files.iter().filter(|_| exported.is_ok()).cloned())
         .collect();
         let tables = recorded.unwrap_or(Ok(())).and(kept.unwrap_or(Ok(()))).and(exported);
-        let result = made.and(drawn).and(tables.map_err(Failure::from));
+        made.and(drawn).and(tables.map_err(Failure::from))
+    }
 
-        let of_pool = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
-        self.times.simulate.cpu = of_pool.map(|pool| pool + self.times.simulate.cpu.unwrap_or(0.0));
-        self.times.total = total.spent();
-        let summary = &mut *self.summary;
+    /// Writes the summary, which marks the folder as finished.
+    fn conclude(mut self, result: Result<(), Failure>) -> Result<(), Failure> {
+        let drawing = rest(&self.times);
+        self.times.draw.iter_mut().for_each(|draw| draw.cpu = drawing);
+        let summary = self.summary;
         summary.outcome = match &result {
             Err(_) => Outcome::Failed,
             Ok(()) if summary.frames.recorded < summary.frames.asked => Outcome::Interrupted,
@@ -233,14 +253,11 @@ impl<'a> Recording<'a> {
         if let Some(last) = &self.last {
             summary.note_last(self.scene, last);
         }
-        let drawing = rest(&self.times);
-        if let Some(draw) = &mut self.times.draw {
-            draw.cpu = drawing;
-        }
         summary.times = Some(self.times);
-        if is_shard {
+        if self.folder.is_shard() {
             return result;
         }
+        let folder = self.folder.path();
         let written = summary.write(folder).map_err(Failure::from);
         if summary.outcome == Outcome::Done && written.is_ok() {
             Checkpoint::remove(folder)?;
@@ -302,9 +319,7 @@ impl<'a> Recording<'a> {
             if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
             }
-            if let Some(shown) = shown {
-                runner = runner.with_time_series(shown);
-            }
+            runner = runner.with_time_series(shown);
             if !self.folder.is_shard() {
                 runner = runner.with_rows();
             }
@@ -356,7 +371,7 @@ impl<'a> Recording<'a> {
             if can_resume && pace.is_due() {
                 pace.take(|| results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary))?;
             }
-            let Simulation { frames, notes, noted, is_stored, .. } = simulation;
+            let frames = &mut simulation.frames;
             let clock = Clock::thread();
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
@@ -369,31 +384,8 @@ impl<'a> Recording<'a> {
             if let Next::Frame(_) = next {
                 bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
             }
-            match next {
-                Next::Working => {}
-                Next::TimeSeries(history) => {
-                    self.summary.note_series(noted, &history.series);
-                    results.take_history(history);
-                }
-                Next::Frame(frame) => {
-                    let between = frames.take_rows(&frame);
-                    results.take(&frame, &between, frames)?;
-                    self.summary.frames.recorded += 1;
-                    self.summary.note(&frame, &between);
-                    if !*is_stored {
-                        let states: Vec<_> = frames.states().collect();
-                        pool.install(|| self.find_causes(&states));
-                    }
-                    self.last = Some(frame);
-                }
-                Next::Done => {
-                    if *notes {
-                        let history = frames.take_history();
-                        self.summary.note_series(noted, &history.series);
-                        results.take_history(history);
-                    }
-                    break;
-                }
+            if !self.take(next, pool, simulation, results)? {
+                break;
             }
         }
         if interrupt::requested() {
@@ -411,6 +403,40 @@ impl<'a> Recording<'a> {
         self.times.simulate.cpu = helpers_time(frames).map(|time| time.as_secs_f64());
         bar.finish_and_clear();
         Ok(())
+    }
+
+    /// Takes what the simulation returns. Returns whether more is to come.
+    fn take(
+        &mut self,
+        next: Next,
+        pool: &ThreadPool,
+        simulation: &mut Simulation<'_>,
+        results: &mut Results<'_>,
+    ) -> Result<bool, Failure> {
+        let Simulation { frames, notes, noted, is_stored, .. } = simulation;
+        let is_done = matches!(next, Next::Done);
+        let history = match next {
+            Next::TimeSeries(history) => Some(history),
+            Next::Done if *notes => Some(frames.take_history()),
+            Next::Frame(frame) => {
+                let between = frames.take_rows(&frame);
+                results.take(&frame, &between, frames)?;
+                self.summary.frames.recorded += 1;
+                self.summary.note(&frame, &between);
+                if !*is_stored {
+                    let states: Vec<_> = frames.states().collect();
+                    pool.install(|| self.find_causes(&states));
+                }
+                self.last = Some(frame);
+                None
+            }
+            Next::Working | Next::Done => None,
+        };
+        if let Some(history) = history {
+            self.summary.note_series(noted, &history.series);
+            results.take_history(history);
+        }
+        Ok(!is_done)
     }
 }
 

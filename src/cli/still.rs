@@ -66,11 +66,7 @@ pub(super) fn one_frame(
     let waiting = waiting.transpose().map_err(OutputError::writing(folder))?;
     let mut frames = pool.install(|| {
         let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
-        let runner = match wanted {
-            Some(wanted) => runner.with_time_series(wanted),
-            None => runner,
-        };
-        Frames::new(runner, &[frame], waiting)
+        Frames::new(runner.with_time_series(wanted), &[frame], waiting)
     });
     let bar = options.printing.progress(&scene.title, frames.steps()[1]);
     let (slice, mut history) = (record::slice(runs.iter().map(|&run| &scene.runs[run])), None);

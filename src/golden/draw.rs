@@ -121,11 +121,7 @@ fn draw_scene(
     let (mut states, mut files, mut stopped) = (States::default(), BTreeMap::new(), BTreeMap::new());
     // Charts, paths and cameras need the whole time series, which is simulated before the first frame is drawn.
     let wanted = scene.time_series().filter(|_| renderer.is_some());
-    let runner = Runner::new(&scene, &runs);
-    let runner = match wanted {
-        Some(wanted) => runner.with_time_series(wanted),
-        None => runner,
-    };
+    let runner = Runner::new(&scene, &runs).with_time_series(wanted);
     let digests = scene.runs.iter().map(|run| run.of.len()).sum();
     let frames: Vec<u64> = frames_with_digests(last, digests, &drawn).into_iter().collect();
     let waiting = wanted.map(|_| tempfile::tempfile().map(Growing::new)).transpose()?;

@@ -22,7 +22,8 @@ pub(crate) struct Frames<'a> {
     is_searching: bool,
     /// The stored time series, until they are returned.
     known: Option<History>,
-    source: Source,
+    /// The states of frames, if everything is simulated before the first one: they wait until the time series are known.
+    waiting: Option<Waiting>,
 }
 
 /// The progress of a simulation, from which it continues with the same bits.
@@ -55,14 +56,6 @@ impl Progress {
     }
 }
 
-/// The source of the states of frames.
-enum Source {
-    /// The runs, one frame after the other.
-    Simulated,
-    /// The runs, after their end: states wait until the time series are known.
-    Waiting(Waiting),
-}
-
 /// The states of frames, stored until they are drawn.
 struct Waiting {
     states: Store,
@@ -88,13 +81,9 @@ impl<'a> Frames<'a> {
     /// Frames of a runner at its start, in rising order. With a file for `waiting` states the runner must record time
     /// series, and everything is simulated before the first frame is returned.
     pub(crate) fn new(runner: Runner<'a>, frames: &[u64], waiting: Option<Growing>) -> Self {
-        let source = match waiting {
-            Some(file) => {
-                Source::Waiting(Waiting { states: Store { file, ends: Vec::new() }, reached: 0, is_known: false })
-            }
-            None => Source::Simulated,
-        };
-        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, known: None, source }
+        let waiting =
+            waiting.map(|file| Waiting { states: Store { file, ends: Vec::new() }, reached: 0, is_known: false });
+        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, known: None, waiting }
     }
 
     /// The progress of the simulation; `None` once it is finished. Waiting states are on the disk then.
@@ -102,12 +91,10 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// The waiting states cannot be written.
     pub(crate) fn progress(&mut self) -> io::Result<Option<Progress>> {
-        let Self { runner, frames, taken, source, .. } = self;
-        let waiting = match source {
-            Source::Simulated if *taken < frames.len() => None,
-            Source::Waiting(Waiting { states, is_known: false, .. }) => {
-                Some((states.file.sync()?, states.ends.clone()))
-            }
+        let Self { runner, frames, taken, waiting, .. } = self;
+        let waiting = match waiting {
+            None if *taken < frames.len() => None,
+            Some(Waiting { states, is_known: false, .. }) => Some((states.file.sync()?, states.ends.clone())),
             _ => return Ok(None),
         };
         let states = runner.runs.iter_mut().map(|running| {
@@ -132,12 +119,12 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// The progress belongs to other runs or frames.
     pub(crate) fn resume(&mut self, progress: Progress) -> io::Result<()> {
-        let Self { runner, frames, taken, source, .. } = self;
-        let Progress { states, history, rows, last_fits, met, taken: returned, waiting } = progress;
+        let Self { runner, frames, taken, waiting, .. } = self;
+        let Progress { states, history, rows, last_fits, met, taken: returned, waiting: before } = progress;
         let runs = runner.runs.len();
-        let reached = match (source, waiting) {
-            (Source::Simulated, None) => Some(returned),
-            (Source::Waiting(to_fill), Some((grown, ends)))
+        let reached = match (waiting, before) {
+            (None, None) => Some(returned),
+            (Some(to_fill), Some((grown, ends)))
                 if returned == 0 && ends.is_sorted() && ends.last().copied().unwrap_or(0) == grown.length =>
             {
                 (to_fill.reached, to_fill.states.ends) = (ends.len() / runs.max(1), ends);
@@ -194,13 +181,11 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// Stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
-        let Self { runner, frames, taken, is_searching, known, source, .. } = self;
+        let Self { runner, frames, taken, is_searching, known, waiting } = self;
         if let Some(history) = known.take() {
             return Ok(Next::TimeSeries(history));
         }
-        if let Source::Waiting(waiting) = source
-            && !waiting.is_known
-        {
+        if let Some(waiting) = waiting.as_mut().filter(|waiting| !waiting.is_known) {
             let frame = frames.get(waiting.reached).copied();
             let moment = runner.scene.moment(frame.unwrap_or(runner.scene.last_frame()));
             if !runner.advance_towards(moment, most_steps) {
@@ -217,12 +202,12 @@ impl<'a> Frames<'a> {
         }
         let Some(&frame) = frames.get(*taken) else { return Ok(Next::Done) };
         let moment = runner.scene.moment(frame);
-        if matches!(source, Source::Simulated) && !runner.advance_towards(moment, most_steps) {
+        if waiting.is_none() && !runner.advance_towards(moment, most_steps) {
             return Ok(Next::Working);
         }
         runner.check()?;
         let (first, scene) = (*taken * runner.runs.len(), runner.scene);
-        if let (Source::Waiting(waiting), false) = (source, *is_searching) {
+        if let (Some(waiting), false) = (waiting, *is_searching) {
             for (place, running) in runner.runs.iter_mut().enumerate() {
                 let state = State::from_bytes(&waiting.states.get(first + place)?);
                 let state = state.filter(|state| running.world.takes(state));
@@ -241,19 +226,19 @@ impl<'a> Frames<'a> {
     /// The steps taken so far and the steps at the end, of all runs together.
     pub(crate) fn steps(&self) -> [u64; 2] {
         let scene = self.runner.scene;
-        let last = match self.source {
-            Source::Waiting(_) => scene.last_frame(),
-            Source::Simulated => self.frames.last().copied().unwrap_or(0),
+        let last = match self.waiting {
+            Some(_) => scene.last_frame(),
+            None => self.frames.last().copied().unwrap_or(0),
         };
         [self.reached().into_iter().fold(0, u64::saturating_add), self.runner.steps_at(scene.moment(last))]
     }
 
     /// The time that all runs have reached, and the time of the last frame (s); `None` once the simulation is finished.
     pub(crate) fn on_the_way(&self) -> Option<[f64; 2]> {
-        let end = match &self.source {
-            Source::Simulated => *self.frames.get(self.taken..)?.last()?,
-            Source::Waiting(waiting) if !waiting.is_known => self.runner.scene.last_frame(),
-            _ => return None,
+        let end = match &self.waiting {
+            None => *self.frames.get(self.taken..)?.last()?,
+            Some(waiting) if !waiting.is_known => self.runner.scene.last_frame(),
+            Some(_) => return None,
         };
         let times = self.runner.runs.iter().map(|running| running.world.steps() as f64 * running.step);
         Some([times.fold(f64::INFINITY, f64::min), self.runner.scene.frame_time(end)])
@@ -268,9 +253,9 @@ impl<'a> Frames<'a> {
     /// The steps of each run so far.
     fn reached(&self) -> Vec<u64> {
         let end = self.runner.scene.moment(self.runner.scene.last_frame());
-        let steps = |running: &Running| match &self.source {
+        let steps = |running: &Running| match &self.waiting {
             // Finished runs are then set back to each frame.
-            Source::Waiting(waiting) if waiting.is_known => running.world.steps_at(end),
+            Some(waiting) if waiting.is_known => running.world.steps_at(end),
             _ => running.world.steps(),
         };
         self.runner.runs.iter().map(steps).collect()

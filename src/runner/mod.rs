@@ -162,9 +162,12 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// Records time series of some diagnostics of all runs.
-    pub(crate) fn with_time_series(self, wanted: &[Diagnostic]) -> Self {
-        self.with_closer_time_series(wanted, None, &[])
+    /// Records time series of some diagnostics of all runs, if any are wanted.
+    pub(crate) fn with_time_series<'w>(self, wanted: impl Into<Option<&'w [Diagnostic]>>) -> Self {
+        match wanted.into() {
+            Some(wanted) => self.with_closer_time_series(wanted, None, &[]),
+            None => self,
+        }
     }
 
     /// Records more moments: the interval `closer` (s), if given, has as many moments as the whole scene usually has,

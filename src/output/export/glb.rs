@@ -5,7 +5,8 @@
 use super::course::Course;
 use super::influence::{self, MOST};
 use super::narrow::{single, singles};
-use super::{OfBody, OfRun};
+use super::surface::Surface;
+use super::{FilesOf, OfBody};
 use crate::sim::geometry::bounds;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -77,8 +78,8 @@ impl Document {
     }
 
     /// Appends a body: a mesh, its skin, and the motions of its joints at the times in the array `times`.
-    fn body(&mut self, place: usize, body: &OfBody, times: usize, frames: usize) {
-        let OfBody { name, surface, .. } = body;
+    fn body(&mut self, place: usize, body: &OfBody<Surface>, times: usize, frames: usize) {
+        let (name, surface) = (body.title(), &body.shown);
         let (rest, joints) = (surface.body.rest(), surface.body.len());
         let name = serde_json::to_string(name).expect("a text");
         let points = surface.carried.as_ref().map_or(rest, |carried| &carried.rest);
@@ -183,7 +184,7 @@ impl Document {
 pub(super) fn write(
     to: &mut impl Write,
     (mark, name): (&str, &str),
-    run: &OfRun,
+    run: &FilesOf<Surface>,
     course: &mut Course<'_>,
 ) -> io::Result<()> {
     let frames = course.times.len();
@@ -214,7 +215,7 @@ pub(super) fn write(
 }
 
 /// Writes the positions of each node in all frames, node after node.
-fn motions(to: &mut impl Write, body: &OfBody, course: &mut Course<'_>) -> io::Result<()> {
+fn motions(to: &mut impl Write, body: &OfBody<Surface>, course: &mut Course<'_>) -> io::Result<()> {
     let (nodes, frames) = (body.nodes.clone(), course.times.len());
     let at_once = (AT_ONCE / (12 * frames)).max(1);
     for first in nodes.clone().step_by(at_once) {

@@ -63,60 +63,38 @@ pub(crate) struct Export<'a> {
     folder: PathBuf,
     formats: Vec<Format>,
     /// The grids of the runs, if they are written.
-    series: Vec<Series>,
+    grids: Vec<FilesOf<Grid>>,
     /// The surfaces of the runs, if they are written.
-    surfaces: Vec<OfRun>,
+    surfaces: Vec<FilesOf<Surface>>,
     /// The requested frames, those of other shards included.
     frames: Vec<u64>,
 }
 
-/// The surfaces of a run.
-struct OfRun {
-    /// The place of the run among the requested ones.
-    place: usize,
-    /// The index of the run in the scene.
-    run: usize,
-    /// What the names of its files begin with, and the name of its folder.
-    stem: String,
-    bodies: Vec<OfBody>,
-}
-
-/// The surface of a body.
-struct OfBody {
-    /// Its name in the scene, or `body` if it has none.
-    name: String,
-    nodes: Range<usize>,
-    surface: Surface,
-}
-
-/// Files of one run that are shown together.
-struct Series {
+/// Files of a run, with grids or surfaces of its bodies.
+struct FilesOf<T> {
     /// The place of the run among the requested ones.
     place: usize,
     /// The index of the run in the scene.
     run: usize,
     /// What the names of its files begin with, and the name of their folder.
     stem: String,
-    parts: Vec<Part>,
+    bodies: Vec<OfBody<T>>,
 }
 
-/// A body in a series.
-struct Part {
-    /// What the names of its files begin with.
-    stem: String,
+/// A body in files.
+struct OfBody<T> {
     /// Its name in the scene; empty if it has none.
     name: String,
-    shape: Shape,
     nodes: Range<usize>,
     elements: Range<usize>,
-    cells: Cells,
+    shown: T,
 }
 
-/// What is written of a body.
-enum Shape {
-    Elements(Arc<Body>),
-    /// The surface that its elements carry.
-    Surface(Arc<Carried>),
+/// A grid of a body: its elements, or the surface that they carry.
+struct Grid {
+    cells: Cells,
+    body: Arc<Body>,
+    carried: Option<Arc<Carried>>,
 }
 
 impl<'a> Export<'a> {
@@ -132,17 +110,18 @@ impl<'a> Export<'a> {
         frames: &[u64],
     ) -> Result<Self, OutputError> {
         let wants_grids = formats.contains(&Format::Vtu);
-        let series: Vec<_> = if wants_grids { all_series(scene, runs).collect() } else { Vec::new() };
+        let grids = if wants_grids { Grid::all(scene, runs) } else { Vec::new() };
         let wants_surfaces = formats.iter().any(|&format| format != Format::Vtu);
-        let surfaces: Vec<_> = if wants_surfaces { all_surfaces(scene, runs).collect() } else { Vec::new() };
+        let surface = |body: &Arc<Body>| wants_surfaces.then(|| Surface::of(body));
+        let surfaces = FilesOf::all(scene, runs, "", surface);
         let has_frames = formats.contains(&Format::Obj);
         let stems = surfaces.iter().filter(|_| has_frames).map(|run| &run.stem);
-        for stem in series.iter().map(|one| &one.stem).chain(stems) {
+        for stem in grids.iter().map(|run| &run.stem).chain(stems) {
             let path = folder.join(stem);
             fs::create_dir_all(&path).map_err(OutputError::writing(&path))?;
         }
         let (folder, formats, frames) = (folder.to_owned(), formats.to_vec(), frames.to_vec());
-        Ok(Self { scene, folder, formats, series, surfaces, frames })
+        Ok(Self { scene, folder, formats, grids, surfaces, frames })
     }
 
     /// Writes the files of a frame.
@@ -150,17 +129,17 @@ impl<'a> Export<'a> {
     /// # Errors
     /// If one cannot be written; others may have been.
     pub(crate) fn write(&self, frame: &Frame) -> Result<(), OutputError> {
-        let files: Vec<_> = self.series.iter().flat_map(|one| one.parts.iter().map(move |part| (one, part))).collect();
-        files.par_iter().try_for_each(|(series, part)| {
-            let path = self.folder.join(series.grid_file(part, frame.index));
-            write_whole(&path, &self.grid(series, part, frame.index, &frame.runs[series.place]))
+        let files: Vec<_> = self.grids.iter().flat_map(|run| run.bodies.iter().map(move |body| (run, body))).collect();
+        files.par_iter().try_for_each(|(run, body)| {
+            let path = self.folder.join(run.grid_file(body, frame.index));
+            write_whole(&path, &self.grid(body, frame.index, &frame.runs[run.place]))
         })?;
         if !self.formats.contains(&Format::Obj) {
             return Ok(());
         }
         self.surfaces.par_iter().try_for_each(|run| {
             let Snapshot { time, position, .. } = &frame.runs[run.place].snapshot;
-            let bodies = run.bodies.iter().map(|body| (&*body.name, &body.surface, &position[body.nodes.clone()]));
+            let bodies = run.bodies.iter().map(|body| (body.title(), &body.shown, &position[body.nodes.clone()]));
             let text =
                 obj::document(&mark(self.scene, Some(frame.index)), [*time, self.scene.runs[run.run].step], bodies);
             write_whole(&self.folder.join(run.frame_file(frame.index)), text.as_bytes())
@@ -170,40 +149,38 @@ impl<'a> Export<'a> {
     /// The files of a frame, below the output folder.
     fn frame_files(&self, frame: u64) -> impl Iterator<Item = String> {
         let grids =
-            self.series.iter().flat_map(move |one| one.parts.iter().map(move |part| one.grid_file(part, frame)));
+            self.grids.iter().flat_map(move |run| run.bodies.iter().map(move |body| run.grid_file(body, frame)));
         let has_frames = self.formats.contains(&Format::Obj);
         grids.chain(self.surfaces.iter().filter(move |_| has_frames).map(move |run| run.frame_file(frame)))
     }
 
-    /// The grid of a part in a frame.
-    fn grid(&self, series: &Series, part: &Part, frame: u64, run: &RunFrame) -> Vec<u8> {
+    /// The grid of a body in a frame of its run.
+    fn grid(&self, of: &OfBody<Grid>, frame: u64, run: &RunFrame) -> Vec<u8> {
         let Snapshot { time, position, velocity, turned_over, broken, field, .. } = &run.snapshot;
         let mark = mark(self.scene, Some(frame));
-        let [position, velocity] = [position, velocity].map(|all| &all[part.nodes.clone()]);
-        let body = match &part.shape {
-            Shape::Surface(carried) => {
-                let velocity = positions(carried, velocity);
-                let of_points = [Column::Vectors("velocity", &velocity)];
-                return vtu::document(&mark, *time, &part.cells, &positions(carried, position), &of_points, &[]);
-            }
-            Shape::Elements(body) => body,
-        };
+        let [position, velocity] = [position, velocity].map(|all| &all[of.nodes.clone()]);
+        let Grid { cells, body, carried } = &of.shown;
+        if let Some(carried) = carried {
+            let velocity = positions(carried, velocity);
+            let of_points = [Column::Vectors("velocity", &velocity)];
+            return vtu::document(&mark, *time, cells, &positions(carried, position), &of_points, &[]);
+        }
         let mut of_points = vec![Column::Vectors("velocity", velocity)];
-        let mut of_cells = vec![Column::Flags("turned_over", &turned_over[part.elements.clone()])];
-        of_cells.extend(broken.get(part.elements.clone()).map(|broken| Column::Flags("broken", broken)));
+        let mut of_cells = vec![Column::Flags("turned_over", &turned_over[of.elements.clone()])];
+        of_cells.extend(broken.get(of.elements.clone()).map(|broken| Column::Flags("broken", broken)));
         of_cells.extend(body.fill().map(|fill| Column::Numbers("fill", fill)));
         let name = self.scene.view.colour.map(|scale| (scale.field.support(), typed(&scale.field)));
         // A run from which distances are measured has no values.
         match &name {
-            Some((Support::Nodes, name)) if field.len() == self.scene.runs[series.run].body().len() => {
-                of_points.push(Column::Numbers(name, &field[part.nodes.clone()]));
+            Some((Support::Nodes, name)) if field.len() == self.scene.runs[run.run].body().len() => {
+                of_points.push(Column::Numbers(name, &field[of.nodes.clone()]));
             }
             Some((Support::Elements, name)) if field.len() == turned_over.len() => {
-                of_cells.push(Column::Numbers(name, &field[part.elements.clone()]));
+                of_cells.push(Column::Numbers(name, &field[of.elements.clone()]));
             }
             _ => {}
         }
-        vtu::document(&mark, *time, &part.cells, position, &of_points, &of_cells)
+        vtu::document(&mark, *time, cells, position, &of_points, &of_cells)
     }
 
     /// What is wrong with the files of frames that an earlier command has written, in words; `None` if all are as they were.
@@ -232,16 +209,13 @@ impl<'a> Export<'a> {
         if let Some(states) = states {
             self.write_courses(frames, states)?;
         }
-        self.series.iter().try_for_each(|series| {
-            let path = self.folder.join(format!("{}.pvd", series.stem));
-            let files = self.moments(series.run, frames).into_iter().flat_map(|(at, time)| {
-                let file = move |part: &Part| (time, part.name.clone(), series.grid_file(part, frames[at]));
-                series.parts.iter().map(file)
+        self.grids.iter().try_for_each(|run| {
+            let path = self.folder.join(format!("{}.pvd", run.stem));
+            let files = self.moments(run.run, frames).into_iter().flat_map(|(at, time)| {
+                run.bodies.iter().map(move |body| (time, body.name.clone(), run.grid_file(body, frames[at])))
             });
-            write_whole(
-                &path,
-                pvd::document(&mark(self.scene, None), self.scene.runs[series.run].step, files).as_bytes(),
-            )
+            let list = pvd::document(&mark(self.scene, None), self.scene.runs[run.run].step, files);
+            write_whole(&path, list.as_bytes())
         })
     }
 
@@ -265,7 +239,7 @@ impl<'a> Export<'a> {
     /// Writes a file of a run piece by piece.
     fn write_course(
         &self,
-        run: &OfRun,
+        run: &FilesOf<Surface>,
         ending: &str,
         write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
     ) -> Result<(), OutputError> {
@@ -289,24 +263,41 @@ impl<'a> Export<'a> {
     }
 }
 
-impl OfRun {
+impl<T> FilesOf<T> {
+    /// The files of some runs, with what `show` takes of each body; none of a run without any. Their names end with `ending`.
+    fn all(scene: &Scene, runs: &[usize], ending: &str, show: impl Fn(&Arc<Body>) -> Option<T>) -> Vec<Self> {
+        let of_run = |(place, &run): (usize, &usize)| {
+            let Run { name, of, bodies, .. } = &scene.runs[run];
+            let body = |(at, body): (usize, &Arc<Body>)| {
+                let name = scene.bodies[of[at]].name.clone();
+                Some(OfBody { name, nodes: bodies.nodes(at), elements: bodies.elements(at), shown: show(body)? })
+            };
+            let bodies: Vec<_> = bodies.bodies().iter().enumerate().filter_map(body).collect();
+            (!bodies.is_empty()).then(|| Self { place, run, stem: file_name(name) + ending, bodies })
+        };
+        runs.iter().enumerate().filter_map(of_run).collect()
+    }
+}
+
+impl FilesOf<Surface> {
     /// The file of the surfaces in a frame, below the output folder.
     fn frame_file(&self, frame: u64) -> String {
         format!("{}/frame_{frame:05}.obj", self.stem)
     }
 }
 
-/// The surfaces of some runs.
-fn all_surfaces<'a>(scene: &'a Scene, runs: &'a [usize]) -> impl Iterator<Item = OfRun> + 'a {
-    runs.iter().enumerate().map(|(place, &run)| {
-        let (of, bodies) = (&scene.runs[run].of, &scene.runs[run].bodies);
-        let body = |(at, body): (usize, &Arc<Body>)| {
-            let name = or_body(&scene.bodies[of[at]].name).to_owned();
-            OfBody { name, nodes: bodies.nodes(at), surface: Surface::of(body) }
-        };
-        let bodies = bodies.bodies().iter().enumerate().map(body).collect();
-        OfRun { place, run, stem: file_name(&scene.runs[run].name), bodies }
-    })
+impl FilesOf<Grid> {
+    /// The file of a body in a frame, below the output folder.
+    fn grid_file(&self, body: &OfBody<Grid>, frame: u64) -> String {
+        format!("{}/{}_{frame:05}.vtu", self.stem, file_name(body.title()))
+    }
+}
+
+impl<T> OfBody<T> {
+    /// Its name in files.
+    fn title(&self) -> &str {
+        or_body(&self.name)
+    }
 }
 
 /// The name of a body in files.
@@ -314,43 +305,21 @@ fn or_body(name: &str) -> &str {
     if name.is_empty() { "body" } else { name }
 }
 
-impl Series {
-    /// The file of a part in a frame, below the output folder.
-    fn grid_file(&self, part: &Part, frame: u64) -> String {
-        format!("{}/{}_{frame:05}.vtu", self.stem, part.stem)
+impl Grid {
+    /// The grids of elements of some runs, each followed by those of surfaces that bodies of the run carry.
+    fn all(scene: &Scene, runs: &[usize]) -> Vec<FilesOf<Self>> {
+        let grid = |body: &Arc<Body>, cells, carried| Self { cells, body: Arc::clone(body), carried };
+        let mut all = FilesOf::all(scene, runs, "", |body| Some(grid(body, Cells::of_body(body), None)));
+        all.extend(FilesOf::all(scene, runs, SURFACE, |body| {
+            let carried = body.carried()?;
+            Some(grid(body, Cells::of_triangles(&carried.triangles), Some(Arc::clone(carried))))
+        }));
+        all.sort_by_key(|run| run.place);
+        all
     }
 }
 
-/// The series of grids of some runs: one of elements for each, and one of surfaces if some bodies carry them.
-fn all_series<'a>(scene: &'a Scene, runs: &'a [usize]) -> impl Iterator<Item = Series> + 'a {
-    runs.iter().enumerate().flat_map(move |(place, &run)| {
-        let series = move |ending: &str, shape_of: fn(&Arc<Body>) -> Option<Shape>| {
-            let (of, bodies) = (&scene.runs[run].of, &scene.runs[run].bodies);
-            let part = |(at, body): (usize, &Arc<Body>)| {
-                let (name, shape) = (scene.bodies[of[at]].name.clone(), shape_of(body)?);
-                let cells = match &shape {
-                    Shape::Elements(body) => Cells::of_body(body),
-                    Shape::Surface(carried) => Cells::of_triangles(&carried.triangles),
-                };
-                Some(Part {
-                    stem: file_name(or_body(&name)),
-                    name,
-                    shape,
-                    nodes: bodies.nodes(at),
-                    elements: bodies.elements(at),
-                    cells,
-                })
-            };
-            let parts: Vec<_> = bodies.bodies().iter().enumerate().filter_map(part).collect();
-            let stem = file_name(&scene.runs[run].name) + ending;
-            (!parts.is_empty()).then_some(Series { place, run, stem, parts })
-        };
-        let surface = |body: &Arc<Body>| body.carried().map(|carried| Shape::Surface(Arc::clone(carried)));
-        [series("", |body| Some(Shape::Elements(Arc::clone(body)))), series(SURFACE, surface)].into_iter().flatten()
-    })
-}
-
-/// The ending of names of series of carried surfaces.
+/// The ending of the names of grids of carried surfaces.
 const SURFACE: &str = "-surface";
 
 /// Patterns of the files for some runs and frames of a scene, below the output folder.

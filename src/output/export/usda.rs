@@ -3,7 +3,8 @@
 
 use super::course::Course;
 use super::narrow::singles;
-use super::{OfBody, OfRun};
+use super::surface::Surface;
+use super::{FilesOf, OfBody};
 use crate::sim::geometry::bounds;
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -17,7 +18,12 @@ pub(super) struct Head<'h> {
 }
 
 /// Writes a run.
-pub(super) fn write(to: &mut impl Write, head: &Head<'_>, run: &OfRun, course: &mut Course<'_>) -> io::Result<()> {
+pub(super) fn write(
+    to: &mut impl Write,
+    head: &Head<'_>,
+    run: &FilesOf<Surface>,
+    course: &mut Course<'_>,
+) -> io::Result<()> {
     let Head { mark, name, rate } = head;
     // The unit of time is a frame.
     let codes: Vec<f64> = course.times.iter().map(|time| time * rate).collect();
@@ -33,9 +39,9 @@ pub(super) fn write(to: &mut impl Write, head: &Head<'_>, run: &OfRun, course: &
     )?;
     let mut names = Names::default();
     for body in &run.bodies {
-        let surface = &body.surface;
+        let surface = &body.shown;
         if !surface.faces.is_empty() || surface.lines.is_empty() {
-            begin(to, "Mesh", &names.of(&body.name), &body.name)?;
+            begin(to, "Mesh", &names.of(body.title()), body.title())?;
             to.write_all(
                 b"        uniform token subdivisionScheme = \"none\"\n        uniform bool doubleSided = 1\n",
             )?;
@@ -46,7 +52,7 @@ pub(super) fn write(to: &mut impl Write, head: &Head<'_>, run: &OfRun, course: &
             to.write_all(b"    }\n")?;
         }
         if !surface.lines.is_empty() {
-            begin(to, "BasisCurves", &names.of(&format!("{} lines", body.name)), &body.name)?;
+            begin(to, "BasisCurves", &names.of(&format!("{} lines", body.title())), body.title())?;
             to.write_all(b"        uniform token type = \"linear\"\n")?;
             numbers(to, "int[] curveVertexCounts", surface.lines.iter().map(|_| 2))?;
             let ends = |points: &[DVec3]| surface.lines.iter().flatten().map(|&point| points[point as usize]).collect();
@@ -64,7 +70,7 @@ fn begin(to: &mut impl Write, kind: &str, name: &str, shown: &str) -> io::Result
 /// The box, the points and the velocities in each frame, of the points that `of` takes from those of the surface.
 fn samples(
     to: &mut impl Write,
-    body: &OfBody,
+    body: &OfBody<Surface>,
     course: &mut Course<'_>,
     codes: &[f64],
     of: &dyn Fn(&[DVec3]) -> Vec<DVec3>,
@@ -76,7 +82,7 @@ fn samples(
                 "vector3f[] velocities" => course.velocities(frame, &body.nodes)?,
                 _ => course.positions(frame, &body.nodes)?,
             };
-            let mut vectors = of(&body.surface.points(&of_nodes));
+            let mut vectors = of(&body.shown.points(&of_nodes));
             if what == "float3[] extent" {
                 let (low, high) = bounds(&vectors);
                 vectors = vec![low, high];
