@@ -6,34 +6,11 @@ use super::error::kind_of;
 use super::export;
 use super::frame_name::frame_number;
 use super::{
-    DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, is_folder, read_file, read_tags,
+    DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, Whose, is_folder, read_file, read_tags,
 };
-use crate::scene::Scene;
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-
-/// The scene to which results belong.
-#[derive(Clone, Debug)]
-pub(crate) struct Whose {
-    /// Digest of the scene's meaning.
-    pub digest: String,
-    pub title: String,
-    /// Its file, as a full path.
-    pub file: Option<PathBuf>,
-}
-
-impl Whose {
-    pub(crate) fn of(scene: &Scene) -> Self {
-        Self { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() }
-    }
-
-    /// Whether results with this digest belong to the scene. A scene with a model made in code has no digest, so no
-    /// results belong to it.
-    fn owns(&self, digest: &str) -> bool {
-        !digest.is_empty() && digest == self.digest
-    }
-}
 
 /// How a command uses its folder.
 #[derive(Clone, Copy, Debug, Default)]
@@ -206,88 +183,126 @@ struct Found {
     has_summary: bool,
 }
 
+/// What the results in a file are, from the least to the greatest reason for refusing a folder.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// Of another version of the scene's file.
+    Version,
+    /// Frames of this scene in another size or with other runs: these, in words.
+    Unlike(String),
+    /// Of another program.
+    Foreign,
+    /// Of another scene.
+    Other,
+}
+
+/// The scene of a command, what it will write, and the scene of the summary in the folder.
+struct Claim<'c> {
+    scene: &'c Whose,
+    manifest: &'c Manifest,
+    owner: Option<&'c Owner>,
+    /// The digest of another version of the scene's file, if the summary is of one.
+    version: Option<&'c str>,
+}
+
+impl Claim<'_> {
+    /// The kind of results with this digest; `None` if they are this scene's.
+    fn kind(&self, digest: &str) -> Option<Kind> {
+        match self.version {
+            Some(version) if version == digest => Some(Kind::Version),
+            _ => (!self.scene.owns(digest)).then_some(Kind::Other),
+        }
+    }
+
+    /// The kind of a table or summary, or of a frame; `None` if it is this scene's and may stay.
+    fn kind_of(&self, path: &Path, is_record: bool) -> Result<Option<Kind>, OutputError> {
+        match fs::metadata(path) {
+            Ok(kind) if !kind.is_file() => {
+                return Err(OutputError::NoFile { path: path.to_owned(), what: kind_of(&kind) });
+            }
+            Ok(_) => {}
+            // A dangling link can be replaced like a file.
+            Err(_) if path.is_symlink() => return Ok(Some(Kind::Foreign)),
+            Err(error) => return Err(OutputError::reading(path)(error)),
+        }
+        if is_record {
+            return Ok(self.owner.map_or(Some(Kind::Foreign), |owner| self.kind(&owner.digest)));
+        }
+        let Some((size, tags)) = read_tags(path)?.filter(|(_, tags)| tags.frame().is_some()) else {
+            return Ok(Some(Kind::Foreign));
+        };
+        let kind = tags.scenes.first().map_or(Some(Kind::Foreign), |digest| self.kind(digest));
+        let runs = tags.states.iter().map(|(_, run)| run);
+        let own = self.manifest.kept_size().filter(|_| kind.is_none());
+        Ok(match own.filter(|own| *own != size || !runs.clone().eq(&self.manifest.runs)) {
+            Some(_) => {
+                let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
+                Some(Kind::Unlike(format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "))))
+            }
+            None => kind,
+        })
+    }
+
+    /// The results of the greatest kind among some, in words. Results of other programs are named by their paths below the folder.
+    fn words(&self, greatest: &Kind, mut foreign: Vec<String>) -> String {
+        match greatest {
+            Kind::Other => match self.owner.filter(|owner| !self.scene.owns(&owner.digest)) {
+                Some(Owner { title, file: Some(file), .. }) => {
+                    format!("the results of another scene (“{title}”, {file})")
+                }
+                Some(Owner { title, .. }) => format!("the results of another scene (“{title}”)"),
+                None => "frames of another scene".to_owned(),
+            },
+            Kind::Foreign => {
+                foreign.sort_unstable();
+                match foreign.len() {
+                    1 => format!("{}, which was not written by localshape", foreign[0]),
+                    all => format!("{} and {} more, which were not written by localshape", foreign[0], all - 1),
+                }
+            }
+            Kind::Unlike(words) => format!("frames of this scene of {words}"),
+            Kind::Version => {
+                let file = self.scene.file.as_ref().and_then(|file| file.file_name()).unwrap_or_default();
+                format!("the results of another version of {}", file.display())
+            }
+        }
+    }
+}
+
 impl Found {
     fn in_folder(path: &Path, scene: &Whose, manifest: &Manifest) -> Result<Self, OutputError> {
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
         let version = owner.as_ref().filter(|owner| !scene.owns(&owner.digest) && owner.is_of_file(scene, path));
-        let (mut others, mut versions, mut foreign) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut unlike, mut unlike_words) = (Vec::new(), String::new());
+        let version = version.map(|owner| owner.digest.as_str());
+        let claim = Claim { scene, manifest, owner: owner.as_ref(), version };
+        let mut found = Vec::new();
         for entry in fs::read_dir(path).map_err(OutputError::reading(path))? {
             let entry = entry.map_err(OutputError::reading(path))?;
             let name = entry.file_name();
             let Some(name) = name.to_str() else { continue };
             let is_record = [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name);
-            if !is_record && frame_number(name).is_none() {
-                continue;
-            }
-            let path = entry.path();
-            match fs::metadata(&path) {
-                Ok(kind) if !kind.is_file() => return Err(OutputError::NoFile { path, what: kind_of(&kind) }),
-                Ok(_) => {}
-                // A dangling link can be replaced like a file.
-                Err(_) if path.is_symlink() => {
-                    foreign.push(name.to_owned());
-                    continue;
-                }
-                Err(error) => return Err(OutputError::reading(&path)(error)),
-            }
-            let frame = if is_record { None } else { read_tags(&path)?.filter(|(_, tags)| tags.frame().is_some()) };
-            let digest = match &frame {
-                Some((_, tags)) => tags.scenes.first(),
-                None => owner.as_ref().filter(|_| is_record).map(|owner| &owner.digest),
-            };
-            match digest {
-                None => foreign.push(name.to_owned()),
-                Some(digest) if version.is_some_and(|version| version.digest == *digest) => versions.push(path),
-                Some(digest) if !scene.owns(digest) => others.push(path),
-                Some(_) => {
-                    let Some((size, tags)) = frame else { continue };
-                    let runs = tags.states.iter().map(|(_, run)| run);
-                    if manifest.kept_size().is_some_and(|own| own != size || !runs.clone().eq(&manifest.runs)) {
-                        let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
-                        unlike_words = format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "));
-                        unlike.push(path);
-                    }
-                }
+            if is_record || frame_number(name).is_some() {
+                found.extend(claim.kind_of(&entry.path(), is_record)?.map(|kind| (kind, entry.path())));
             }
         }
         let earlier = owner.as_ref().map(|_| export::patterns_in(path)).unwrap_or_default();
         let earlier = earlier.iter().filter(|pattern| !manifest.files.contains(pattern));
         for (pattern, is_own) in manifest.files.iter().map(|one| (one, true)).chain(earlier.map(|one| (one, false))) {
             for file in export::matching(path, pattern) {
-                match export::scene_of(&file)? {
-                    None if is_own => foreign.push(relative(&file, path)),
-                    None => {}
-                    Some(digest) if version.is_some_and(|version| version.digest == digest) => versions.push(file),
-                    Some(digest) if !scene.owns(&digest) => others.push(file),
-                    Some(_) => {}
-                }
+                let foreign = is_own.then_some(Kind::Foreign);
+                let kind = export::scene_of(&file)?.map_or(foreign, |digest| claim.kind(&digest));
+                found.extend(kind.map(|kind| (kind, file)));
             }
         }
-        foreign.sort_unstable();
-        let is_other_version = others.is_empty() && foreign.is_empty() && unlike.is_empty();
-        let hindrance = match (&others[..], &foreign[..], &unlike[..], &versions[..]) {
-            ([], [], [], []) => None,
-            ([_, ..], ..) => Some(match owner.as_ref().filter(|owner| !scene.owns(&owner.digest)) {
-                Some(Owner { title, file: Some(file), .. }) => {
-                    format!("the results of another scene (“{title}”, {file})")
-                }
-                Some(Owner { title, .. }) => format!("the results of another scene (“{title}”)"),
-                None => "frames of another scene".to_owned(),
-            }),
-            (_, [name], ..) => Some(format!("{name}, which was not written by localshape")),
-            (_, [name, more @ ..], ..) => {
-                Some(format!("{name} and {} more, which were not written by localshape", more.len()))
-            }
-            (_, _, [_, ..], _) => Some(format!("frames of this scene of {unlike_words}")),
-            _ => {
-                let file = scene.file.as_ref().and_then(|file| file.file_name()).unwrap_or_default();
-                Some(format!("the results of another version of {}", file.display()))
-            }
-        };
-        let mut stale = [others, versions, unlike].concat();
+        let greatest = found.iter().map(|(kind, _)| kind).max();
+        let is_foreign = |kind: &Kind| *kind == Kind::Foreign;
+        let foreign = found.iter().filter(|(kind, _)| is_foreign(kind)).map(|(_, file)| relative(file, path));
+        let hindrance = greatest.map(|kind| claim.words(kind, foreign.collect()));
+        let is_other_version = greatest.is_none_or(|kind| *kind == Kind::Version);
+        let has_summary = owner.as_ref().is_some_and(|owner| scene.owns(&owner.digest));
+        let stale = found.into_iter().filter(|(kind, _)| !is_foreign(kind)).map(|(_, file)| file);
+        let mut stale: Vec<_> = stale.collect();
         stale.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
-        let has_summary = owner.is_some_and(|owner| scene.owns(&owner.digest));
         Ok(Self { stale, hindrance, is_other_version, has_summary })
     }
 

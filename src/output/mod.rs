@@ -24,6 +24,7 @@ pub(crate) mod shell;
 mod states;
 mod summary;
 mod timing;
+mod whose;
 
 pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
 pub(crate) use checkpoint::{Checkpoint, Manifest, waiting_states};
@@ -31,7 +32,7 @@ pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::{recorded, state_digest};
 pub(crate) use error::{OutputError, is_folder, read_file};
 pub(crate) use extremes::Extremes;
-pub(crate) use folder::{Access, Claimed, Folder, Whose};
+pub(crate) use folder::{Access, Claimed, Folder};
 pub use frame_folder::FrameFolder;
 pub(crate) use frame_name::FRAME_FILES;
 pub(crate) use lock::FolderLock;
@@ -40,6 +41,7 @@ pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use summary::{Numbers, Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
+pub(crate) use whose::Whose;
 #[cfg(feature = "render")]
 pub(crate) use {
     checkpoint::passing_frames,
