@@ -103,6 +103,7 @@ mod reading;
 pub mod render;
 pub mod runner;
 pub mod scene;
+mod sets;
 #[cfg(feature = "render")]
 pub mod vector;
 

@@ -21,13 +21,21 @@ const BETWEEN: Duration = Duration::from_millis(10);
 /// Interval at which interruption is polled while it accepts no pictures.
 const LISTEN: Duration = Duration::from_millis(100);
 
-/// Tests whether `ffmpeg` exists.
-pub(super) fn check_program(format: Format) -> Result<(), AnimationError> {
-    let mut command = Command::new("ffmpeg");
-    let status = command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    match status {
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(AnimationError::NoFfmpeg(ending(format))),
-        _ => Ok(()),
+impl Format {
+    /// Tests whether the program that the format needs exists.
+    ///
+    /// # Errors
+    /// If it needs `ffmpeg`, which is missing.
+    pub(crate) fn check_program(self) -> Result<(), AnimationError> {
+        if !matches!(self, Self::Mp4 | Self::WebM) {
+            return Ok(());
+        }
+        let mut command = Command::new("ffmpeg");
+        let status = command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+        match status {
+            Err(error) if error.kind() == ErrorKind::NotFound => Err(AnimationError::NoFfmpeg(ending(self))),
+            _ => Ok(()),
+        }
     }
 }
 

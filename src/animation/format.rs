@@ -1,6 +1,5 @@
 //! File formats.
 
-use super::AnimationError;
 use crate::reading::beside::ending;
 use std::path::Path;
 
@@ -37,17 +36,6 @@ impl Format {
                 path.display()
             )
         })
-    }
-
-    /// Tests whether the program that the format needs exists.
-    ///
-    /// # Errors
-    /// If it needs `ffmpeg`, which is missing.
-    pub(crate) fn check_program(self) -> Result<(), AnimationError> {
-        match self {
-            Self::Mp4 | Self::WebM => super::ffmpeg::check_program(self),
-            _ => Ok(()),
-        }
     }
 }
 

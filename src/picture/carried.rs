@@ -11,6 +11,7 @@ use super::surface::{Border, HATCH_PERIOD, SurfaceLines, Surroundings, newell};
 use super::{LineKind, Mesh, Vertex};
 use crate::carried::append_positions;
 use crate::look::BODIES;
+use crate::sets::{Bins, Sets};
 use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Body, Carried};
 use glam::{DVec3, Vec3};
@@ -46,9 +47,8 @@ pub(super) struct Fine {
     triangles: Vec<[u32; 3]>,
     /// The element of the body that moves each triangle, or [`NONE`].
     movers: Vec<u32>,
-    /// For each corner the end of its entries, each three times a triangle plus the place of the corner in it.
-    ends: Vec<u32>,
-    entries: Vec<u32>,
+    /// The entries of each corner, each three times a triangle plus the place of the corner in it.
+    entries: Bins<u32>,
     /// The points at the ends of each edge, and the triangles beside it, or [`NONE`].
     edges: Vec<[u32; 2]>,
     beside: Vec<[u32; 2]>,
@@ -86,7 +86,7 @@ impl Fine {
                 (b - a).cross(c - a).normalize_or_zero()
             })
             .collect();
-        let mut parts: Vec<u32> = (0..3 * triangles.len() as u32).collect();
+        let mut parts = Sets::new(3 * triangles.len());
         let all = edges(triangles);
         let mut creases = Vec::new();
         for (edge, number) in all.iter().zip(0..) {
@@ -101,29 +101,20 @@ impl Fine {
                     let triangle = &triangles[at as usize];
                     3 * at + triangle.iter().position(|&point| point == end).unwrap_or(0) as u32
                 });
-                join(&mut parts, first, second);
+                parts.join(first, second);
             }
         }
-        let mut corner_of = vec![NONE; parts.len()];
-        let (mut points, mut corners) = (Vec::with_capacity(surface.rest.len()), Vec::with_capacity(parts.len()));
-        for entry in 0..parts.len() {
-            let part = &mut corner_of[root(&mut parts, entry as u32) as usize];
+        let mut corner_of = vec![NONE; 3 * triangles.len()];
+        let (mut points, mut corners) = (Vec::with_capacity(surface.rest.len()), Vec::with_capacity(corner_of.len()));
+        for entry in 0..corner_of.len() {
+            let part = &mut corner_of[parts.first(entry as u32) as usize];
             if *part == NONE {
                 *part = points.len() as u32;
                 points.push(triangles[entry / 3][entry % 3]);
             }
             corners.push(*part);
         }
-        // The entries of each corner, in order.
-        let mut ends = vec![0_u32; points.len() + 1];
-        corners.iter().for_each(|&corner| ends[corner as usize + 1] += 1);
-        (0..points.len()).for_each(|corner| ends[corner + 1] += ends[corner]);
-        let mut entries = vec![0; corners.len()];
-        for (entry, &corner) in corners.iter().enumerate() {
-            let place = &mut ends[corner as usize];
-            entries[*place as usize] = entry as u32;
-            *place += 1;
-        }
+        let entries = Bins::new(points.len(), corners.iter().copied().zip(0..));
         let beside: Vec<_> = all.iter().map(|edge| edge.triangles().map(|at| at.unwrap_or(NONE))).collect();
         Self {
             surface: Arc::clone(surface),
@@ -134,7 +125,6 @@ impl Fine {
             points,
             triangles: corners.as_chunks().0.to_vec(),
             movers: movers(surface, &bodies.bodies()[body]),
-            ends,
             entries,
             edges: all.into_iter().map(|edge| edge.ends).collect(),
             is_closed: !beside.as_flattened().contains(&NONE),
@@ -186,18 +176,15 @@ impl Fine {
             return Vec::new();
         };
         let body = &bodies.bodies()[self.body];
-        let mut around = vec![Vec::new(); body.len()];
-        for (element, nodes) in body.elements().iter().enumerate() {
-            nodes.iter().for_each(|&node| around[node as usize].push(element));
-        }
+        let around = elements_around(body);
         let is_gone = |point: usize| {
             let (nodes, weights) = self.surface.weights.of(point);
             let followed: Vec<_> =
                 nodes.iter().zip(weights).filter(|&(_, &weight)| weight != 0.0).map(|(node, _)| node).collect();
             let Some(&&first) = followed.first() else { return false };
-            let carries = |element: usize| followed.iter().all(|node| body.elements()[element].contains(node));
-            let mut carriers = around[first as usize].iter().filter(|&&element| carries(element)).peekable();
-            carriers.peek().is_some() && carriers.all(|&element| broken[element])
+            let carries = |element: u32| followed.iter().all(|node| body.elements()[element as usize].contains(node));
+            let mut carriers = around.of(first as usize).iter().filter(|&&element| carries(element)).peekable();
+            carriers.peek().is_some() && carriers.all(|&element| broken[element as usize])
         };
         let points: Vec<_> =
             (0..self.surface.rest.len()).into_par_iter().with_min_len(OF_THREAD).map(is_gone).collect();
@@ -207,9 +194,8 @@ impl Fine {
 
     /// The unit normal at a corner at a place.
     fn normal(&self, corner: usize, at: Vec3, (faces, seen): &(Vec<Face>, Vec<bool>), eye: Vec3) -> Vec3 {
-        let start = corner.checked_sub(1).map_or(0, |before| self.ends[before]) as usize;
         let (mut sum, mut is_seen) = (Vec3::ZERO, false);
-        for &entry in &self.entries[start..self.ends[corner] as usize] {
+        for &entry in self.entries.of(corner) {
             let (triangle, place) = (entry as usize / 3, entry as usize % 3);
             sum += faces[triangle].shares[place] * faces[triangle].normal;
             is_seen |= seen[triangle];
@@ -236,17 +222,20 @@ impl Fine {
     }
 }
 
+/// The elements of a body around each node.
+fn elements_around(body: &Body) -> Bins<u32> {
+    let elements = body.elements().iter().zip(0..);
+    Bins::new(body.len(), elements.flat_map(|(nodes, element)| nodes.iter().map(move |&node| (node, element))))
+}
+
 /// The element of a body that moves each triangle of a surface: one with all nodes that its points follow or, where the surface
 /// passes from one element to another, that of a point.
 fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
-    let of_element = |(nodes, element): (&'_ [u32], u32)| nodes.iter().map(|&node| (node, element)).collect::<Vec<_>>();
-    let mut around: Vec<(u32, u32)> = body.elements().iter().zip(0..).flat_map(of_element).collect();
-    around.sort_unstable();
+    let around = elements_around(body);
     let nodes = |point: u32| surface.weights.of(point as usize).0;
     let mover = |points: &[u32]| {
         let first = *nodes(points[0]).first()?;
-        let around = &around[around.partition_point(|&(node, _)| node < first)..];
-        let mut around = around.iter().take_while(|(node, _)| *node == first).map(|&(_, element)| element);
+        let mut around = around.of(first as usize).iter().copied();
         let holds = |element: u32, node| body.elements()[element as usize].contains(node);
         around.find(|&element| points.iter().all(|&point| nodes(point).iter().all(|node| holds(element, node))))
     };
@@ -382,21 +371,4 @@ impl Surroundings<'_> {
         }
         all
     }
-}
-
-/// The first of the set of one of many numbers; each has another one of its set, or itself if it is the first.
-fn root(sets: &mut [u32], mut of: u32) -> u32 {
-    while sets[of as usize] != of {
-        // Shorter paths.
-        let next = sets[of as usize];
-        sets[of as usize] = sets[next as usize];
-        of = next;
-    }
-    of
-}
-
-/// Unites two sets.
-fn join(sets: &mut [u32], one: u32, other: u32) {
-    let (one, other) = (root(sets, one), root(sets, other));
-    sets[one.max(other) as usize] = one.min(other);
 }

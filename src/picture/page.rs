@@ -4,6 +4,7 @@
 use super::measures::BEAD_RIM;
 use super::narrow::narrow;
 use super::{Colour, Rectangle, TextRun};
+use crate::sets::Bins;
 use glam::{DVec2, Vec2};
 use std::f32::consts::TAU;
 
@@ -139,22 +140,8 @@ pub(super) fn point(at: DVec2) -> Vec2 {
 
 /// Lines between pairs of points, joined to lines that are as long and straight as possible.
 pub(super) fn joined(pairs: &[[u32; 2]], place: impl Fn(u32) -> Vec2) -> Vec<Vec<u32>> {
-    // The pairs of each point, in order.
-    let mut places = vec![0_u32; pairs.iter().flatten().max().map_or(0, |&last| last as usize + 2)];
-    pairs.iter().flatten().for_each(|&end| places[end as usize + 1] += 1);
-    (1..places.len()).for_each(|at| places[at] += places[at - 1]);
-    let mut of_points = vec![0; 2 * pairs.len()];
-    for (pair, number) in pairs.iter().zip(0..) {
-        for &end in pair {
-            let place = &mut places[end as usize];
-            of_points[*place as usize] = number;
-            *place += 1;
-        }
-    }
-    let around = |point: u32| {
-        let start = point.checked_sub(1).map_or(0, |before| places[before as usize]);
-        &of_points[start as usize..places[point as usize] as usize]
-    };
+    let points = pairs.iter().flatten().max().map_or(0, |&last| last as usize + 1);
+    let of_points = Bins::new(points, (0..).zip(pairs).flat_map(|(number, pair)| pair.map(|end| (end, number))));
     let (mut lines, mut is_used) = (Vec::new(), vec![false; pairs.len()]);
     for first in 0..pairs.len() {
         if std::mem::replace(&mut is_used[first], true) {
@@ -167,7 +154,7 @@ pub(super) fn joined(pairs: &[[u32; 2]], place: impl Fn(u32) -> Vec2) -> Vec<Vec
                 let other = |at: usize| if pairs[at][0] == to { pairs[at][1] } else { pairs[at][0] };
                 let way = |from: u32, to: u32| (place(to) - place(from)).normalize_or_zero();
                 let straight = |at: &usize| way(from, to).dot(way(to, other(*at)));
-                let free = around(to).iter().map(|&at: &u32| at as usize).filter(|&at| !is_used[at]);
+                let free = of_points.of(to as usize).iter().map(|&at: &u32| at as usize).filter(|&at| !is_used[at]);
                 let Some(next) = free.max_by(|a, b| straight(a).total_cmp(&straight(b))) else { break };
                 is_used[next] = true;
                 line.push(other(next));

@@ -10,6 +10,7 @@ use super::narrow::{narrow, narrow_count, narrow_point};
 use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
 use crate::look::BODIES;
+use crate::sets::Bins;
 use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Body};
 use glam::DVec3;
@@ -129,25 +130,8 @@ impl FaceSides {
     /// The sides sorted by edge.
     fn sorted(&self, nodes: usize) -> Vec<FaceSide> {
         // Sorted into bins by the first node, which leaves hardly anything to sort.
-        let low = |side: &FaceSide| side.ends[0].min(side.ends[1]) as usize;
-        let mut starts = vec![0_u32; nodes + 1];
-        self.sides.iter().for_each(|side| starts[low(side) + 1] += 1);
-        (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
-        let mut sorted = vec![FaceSide::default(); self.sides.len()];
-        for side in &self.sides {
-            let place = &mut starts[low(side)];
-            sorted[*place as usize] = *side;
-            *place += 1;
-        }
-        let key = |side: &FaceSide| (ordered(side.ends), side.first);
-        let mut rest = &mut sorted[..];
-        while let Some(first) = rest.first().map(low) {
-            let count = rest.iter().take_while(|side| low(side) == first).count();
-            let (group, after) = rest.split_at_mut(count);
-            group.sort_unstable_by_key(key);
-            rest = after;
-        }
-        sorted
+        let sides = self.sides.iter().map(|side| (side.ends[0].min(side.ends[1]), *side));
+        Bins::new(nodes, sides).sorted(|side| (ordered(side.ends), side.first))
     }
 
     /// The value of a side at a part of its edge's length, which runs from the lower node to the higher one.

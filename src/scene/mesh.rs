@@ -7,6 +7,7 @@ pub(crate) use summary::MeshSummary;
 use super::limits::Limits;
 use crate::reading::beside::{self, Wrong, ending};
 use crate::reading::words::{count, list, nearest, several, short};
+use crate::sets::Sets;
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
@@ -116,25 +117,9 @@ pub(crate) fn longest(points: &[DVec3]) -> f64 {
 
 /// The number of parts of a body that share no node.
 pub(crate) fn parts(nodes: usize, elements: &IndexLists) -> usize {
-    // Each node leads to one of its part with a smaller number, the first to itself.
-    let mut leads: Vec<u32> = (0..nodes as u32).collect();
-    fn first(leads: &mut [u32], mut node: u32) -> u32 {
-        while leads[node as usize] != node {
-            let next = leads[leads[node as usize] as usize];
-            leads[node as usize] = next;
-            node = next;
-        }
-        node
-    }
-    for element in elements.iter() {
-        let mut least = first(&mut leads, element[0]);
-        for &node in &element[1..] {
-            let other = first(&mut leads, node);
-            leads[least.max(other) as usize] = least.min(other);
-            least = least.min(other);
-        }
-    }
-    (0..).zip(&leads).filter(|&(node, &leads)| node == leads).count()
+    let mut sets = Sets::new(nodes);
+    elements.iter().for_each(|element| element[1..].iter().for_each(|&node| sets.join(element[0], node)));
+    sets.count()
 }
 
 /// The first corners of two sides of a polygon that cross each other, by their places in it.

@@ -15,7 +15,7 @@ pub(super) const DOTS: [f64; 2] = [HAIR, FREE];
 /// The least room for names (sizes of type).
 const LEAST_ROOM: f64 = 3.0;
 
-/// A name at the end of a line, one of [`Annotation::Names`](super::Annotation::Names).
+/// A name at the end of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// Its text, on one line.
