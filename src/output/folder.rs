@@ -6,7 +6,8 @@ use super::error::kind_of;
 use super::export;
 use super::frame_name::frame_number;
 use super::{
-    DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, Whose, is_folder, read_file, read_tags,
+    DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, Whose, is_folder, read_file,
+    read_tags,
 };
 use std::fs;
 use std::ops::Deref;

@@ -35,6 +35,7 @@ mod structure;
 mod summary;
 mod syntax;
 mod turning;
+mod typed;
 
 pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};

@@ -1,6 +1,6 @@
 //! Predictions of the stability of a scene's runs.
 
-use super::{Run, RunSummary, Scene};
+use super::{Run, Scene};
 use crate::reading::words::{quoted, short};
 use crate::sim::Integrator;
 use crate::sim::model::ElasticModel;
@@ -95,34 +95,5 @@ impl Run {
     /// Whether a body of it has no damping.
     fn is_undamped(&self) -> bool {
         self.models.iter().zip(self.bodies.bodies()).any(|(model, body)| !model.prepare(body).is_damped())
-    }
-}
-
-/// The energy that rebounds add to a run, in words; `None` if it is little.
-pub(super) fn rebounds_in_words(run: &RunSummary) -> Option<String> {
-    const LITTLE: f64 = 1e-4;
-    let gain = run.rebound_gain.filter(|&gain| gain > LITTLE)?;
-    let step = run.step * (LITTLE / gain).sqrt();
-    let percent = |share: f64| short((1e4 * share).round() / 100.0);
-    Some(format!(
-        "undamped, e = 1: each rebound adds about {} % to the energy; {} % with a step of {} s",
-        percent(gain),
-        percent(LITTLE),
-        short(step)
-    ))
-}
-
-/// The largest stable step of a run in words, and the run's share of it.
-pub(super) fn in_words(run: &RunSummary) -> String {
-    let part =
-        |limit: f64| format!("{} s ({} % used)", short(limit), short((1000.0 * run.step / limit).round() / 10.0));
-    match run.largest_step {
-        None => "stable with any step".to_owned(),
-        Some(0.0) => format!("no step is stable: {} needs damping", run.integrator),
-        Some(largest) => {
-            let stretched = run.largest_stretched_step.map(|limit| format!(", {} with stretched springs", part(limit)));
-            let of = run.limited_by.as_ref().map_or_else(String::new, |body| format!(" of {body}"));
-            format!("largest stable step {}{of}{}", part(largest), stretched.unwrap_or_default())
-        }
     }
 }

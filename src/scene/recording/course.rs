@@ -1,7 +1,7 @@
 //! The array of an archive that only this program reads: the scene that its states come from, its frames, and how its runs
 //! ended.
 
-use super::Flaw;
+use super::flaw::Flaw;
 use crate::scene::npz::Npz;
 use crate::sim::Divergence;
 use serde::{Deserialize, Serialize};

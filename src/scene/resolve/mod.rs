@@ -20,9 +20,10 @@ mod runs;
 mod steps;
 
 use super::digest::{FileDigests, digest};
-use super::file::{BodyFile, Positive, SceneFile, TimeFile, typed};
+use super::file::{BodyFile, Positive, SceneFile, TimeFile};
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
+use super::typed::typed;
 use super::{ALL_BODIES, Run, Scene, SceneBody, subject};
 use crate::look::{self, FontFiles, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};

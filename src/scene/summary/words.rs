@@ -1,0 +1,213 @@
+//! The contents of a scene in words.
+
+use super::{PartSummary, RunSummary, SceneSummary, coordinates};
+use crate::reading::captions::typed;
+use crate::reading::words::{count, ends, list, several, short};
+use crate::scene::{Run, Scene, SceneBody};
+use crate::sim::{Dimension, FrictionOf, Grip, Kernel, Motion, Obstacle, Shape};
+use glam::DVec3;
+use std::fmt;
+
+impl Scene {
+    /// Each obstacle in a few words.
+    pub(super) fn obstacles_in_words(&self) -> Vec<String> {
+        self.obstacles.iter().map(|one| describe(one, self.dimension())).collect()
+    }
+
+    /// The nodes of each body that are held or dragged, and when. A constraint is the same in all runs of a body.
+    pub(super) fn constraints(&self, held: bool) -> Vec<String> {
+        let of_body = |(at, body): (usize, &SceneBody)| {
+            let place = |run: &'_ Run| run.of.iter().position(|&other| other == at);
+            let mut simulated = self.runs.iter().filter(|run| run.recording.is_none());
+            let (run, place) = simulated.find_map(|run| Some((run, place(run)?)))?;
+            let own = run.bodies.nodes(place);
+            let wanted = run.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
+            let words = wanted.filter_map(|grip| {
+                let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|node| own.contains(node));
+                let nodes: Vec<_> = nodes.map(|node| node - own.start).collect();
+                (!nodes.is_empty()).then(|| constraint(&nodes, &body.name, grip, self.duration))
+            });
+            Some(words.collect::<Vec<_>>())
+        };
+        self.bodies.iter().enumerate().filter_map(of_body).flatten().collect()
+    }
+
+    /// The picture in a few words.
+    pub(super) fn picture(&self) -> String {
+        let view = &self.view;
+        let [width, height] = view.size;
+        let panels = match (self.runs.len(), view.columns) {
+            (1, _) => "one panel".to_owned(),
+            (runs, None) => format!("{runs} panels"),
+            (runs, Some(columns)) if columns >= runs => format!("{runs} panels in a row"),
+            (runs, Some(columns)) => format!("{runs} panels, {columns} in a row"),
+        };
+        let from = match self.dimension() {
+            Dimension::Plane => "from the front".to_owned(),
+            Dimension::Space => {
+                let [across, up] = [view.camera.azimuth, view.camera.elevation].map(|angle| angle.to_degrees().round());
+                let side = if across < 0.0 { "left" } else { "right" };
+                let height = if up < 0.0 { "down" } else { "up" };
+                format!("from {}° {side} and {}° {height}", across.abs(), up.abs())
+            }
+        };
+        let theme = typed(&view.look.theme);
+        let distance = match view.camera.follow {
+            true => ", following the body".to_owned(),
+            false => format!(", {} m away", short(view.camera.distance)),
+        };
+        format!("{width} × {height} px, {theme}, {panels}, seen {from}{distance}")
+    }
+}
+
+impl RunSummary {
+    /// The energy that rebounds add to a run, in words; `None` if it is little.
+    fn rebounds(&self) -> Option<String> {
+        const LITTLE: f64 = 1e-4;
+        let gain = self.rebound_gain.filter(|&gain| gain > LITTLE)?;
+        let step = self.step * (LITTLE / gain).sqrt();
+        let percent = |share: f64| short((1e4 * share).round() / 100.0);
+        Some(format!(
+            "undamped, e = 1: each rebound adds about {} % to the energy; {} % with a step of {} s",
+            percent(gain),
+            percent(LITTLE),
+            short(step)
+        ))
+    }
+
+    /// The largest stable step of a run in words, and the run's share of it.
+    fn stability(&self) -> String {
+        let part =
+            |limit: f64| format!("{} s ({} % used)", short(limit), short((1000.0 * self.step / limit).round() / 10.0));
+        match self.largest_step {
+            None => "stable with any step".to_owned(),
+            Some(0.0) => format!("no step is stable: {} needs damping", self.integrator),
+            Some(largest) => {
+                let stretched =
+                    self.largest_stretched_step.map(|limit| format!(", {} with stretched springs", part(limit)));
+                let of = self.limited_by.as_ref().map_or_else(String::new, |body| format!(" of {body}"));
+                format!("largest stable step {}{of}{}", part(largest), stretched.unwrap_or_default())
+            }
+        }
+    }
+}
+
+/// An obstacle in words.
+fn describe(obstacle: &Obstacle, dimension: Dimension) -> String {
+    let vector = |point: DVec3| vector(&coordinates(point, dimension));
+    let shape = match obstacle.shape {
+        Shape::Floor { normal, height } => format!("floor at {} m along {}", short(height), vector(normal)),
+        Shape::Plate { point, normal } => format!("plate at {} m, facing {}", vector(point), vector(normal)),
+        Shape::Sphere { centre, radius } => format!("sphere at {} m, radius {} m", vector(centre), short(radius)),
+        Shape::Capsule { from, to, radius } => {
+            format!("capsule from {} to {} m, radius {} m", vector(from), vector(to), short(radius))
+        }
+        Shape::Box { centre, half, .. } => format!("box at {} m, sides {} m", vector(centre), vector(2.0 * half)),
+    };
+    let (e, friction) = (short(obstacle.restitution), short(obstacle.friction));
+    let of = match obstacle.friction_of {
+        FrictionOf::Path => String::new(),
+        FrictionOf::Velocity => " on velocities only".to_owned(),
+    };
+    format!("{shape}, e = {e}, μ = {friction}{of}{}", path(&obstacle.motion))
+}
+
+/// The words for the motion of an obstacle.
+fn path(motion: &Motion) -> String {
+    match motion {
+        Motion::Still => String::new(),
+        Motion::Keys { keys, repeat, .. } => {
+            let last = keys.last().map_or(0.0, |key| key.time);
+            let again = if *repeat { ", repeating" } else { "" };
+            format!(", moving along {} keys until {} s{again}", keys.len(), short(last))
+        }
+        Motion::Swing { period, .. } => format!(", swinging once in {} s", short(*period)),
+        Motion::Along(_) => ", moving".to_owned(),
+    }
+}
+
+/// A kinematic constraint on nodes of a body in words.
+fn constraint(nodes: &[usize], body: &str, grip: &Grip, duration: f64) -> String {
+    let nodes = match nodes {
+        [only] => format!("node {only}"),
+        several => format!("{} nodes", count(several.len() as u128)),
+    };
+    let of = if body.is_empty() { String::new() } else { format!(" of {body}") };
+    let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "on".into() };
+    let note = if grip.from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
+    format!("{nodes}{of} from {} s {until}{note}", short(grip.from))
+}
+
+/// A name before what it has; nothing without a name.
+fn titled(name: &str) -> String {
+    if name.is_empty() { String::new() } else { format!("{name}: ") }
+}
+
+fn vector(coordinates: &[f64]) -> String {
+    let numbers: Vec<_> = coordinates.iter().map(|&number| short(number)).collect();
+    format!("({})", numbers.join(", "))
+}
+
+impl fmt::Display for SceneSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = |name: &str, text: &str| writeln!(f, "  {name:<9} {text}");
+        line("scene", &format!("{} ({})", self.title, self.name))?;
+        for body in &self.bodies {
+            let extent: Vec<_> = body.extent.iter().map(|&side| short(side)).collect();
+            let (extent, nodes) = (extent.join(" × "), count(body.nodes as u128));
+            let kinds = list(&body.elements, "and", |words| words.into());
+            let elements = match body.elements.len() {
+                1 => kinds,
+                _ => format!("{} elements ({kinds})", count(body.element_count as u128)),
+            };
+            let name = titled(&body.name);
+            let carried = body.carried.map(|triangles| format!(", carrying {} triangles", count(triangles as u128)));
+            let (mass, carried) = (short(body.mass), carried.unwrap_or_default());
+            line("body", &format!("{name}{nodes} nodes, {elements}, {extent} m, {mass} kg{carried}"))?;
+            let [low, high] = &body.start;
+            // Users copy regions of nodes from it, so it holds all nodes.
+            let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
+            let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
+            line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
+        }
+        line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
+        let (duration, rate) = (short(self.duration), short(self.frames_per_second));
+        line("time", &format!("{duration} s, {} at {rate} per second", several(self.frames, "frame")))?;
+        if self.cycle.is_finite() {
+            line("cycle", &format!("T = {} s", short(self.cycle)))?;
+        }
+        for run in &self.runs {
+            match (&self.bodies[..], &run.parts[..]) {
+                ([_], [PartSummary { model, .. }]) => line("run", &format!("{}: {model}", run.name))?,
+                _ => {
+                    line("run", &run.name)?;
+                    let part = |part: &PartSummary| line("", &format!("{}{}", titled(&part.body), part.model));
+                    run.parts.iter().try_for_each(part)?;
+                }
+            }
+            if run.recorded {
+                continue;
+            }
+            let (step, part) = (short(run.step), short(self.cycle / run.step));
+            let steps = count(run.steps.into());
+            let kernel = if run.kernel == Kernel::Reference { ", kernel reference" } else { "" };
+            let stepping = match run.tolerance {
+                Some(tolerance) => format!("tolerance {tolerance:e}"),
+                None => format!("ΔT = {step} s = T/{part}, {steps} steps"),
+            };
+            line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
+            if run.tolerance.is_none() {
+                line("", &run.stability())?;
+                run.rebounds().iter().try_for_each(|text| line("", text))?;
+            }
+        }
+        for obstacle in &self.obstacles {
+            line("obstacle", obstacle)?;
+        }
+        for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs)] {
+            constraints.iter().try_for_each(|constraint| line(name, constraint))?;
+        }
+        line("picture", &self.picture)?;
+        write!(f, "  {:<9} {}", "digest", self.digest)
+    }
+}

@@ -1,0 +1,89 @@
+//! A checked file as typed parts; parts with mistakes are left out.
+
+use super::file::{ContactRule, SceneFile};
+use super::structure::Checked;
+use crate::look::TypedView;
+use crate::reading::collector::{Collector, PathPart, key_path};
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value as Json};
+use std::slice;
+
+impl SceneFile {
+    /// The parts of a checked file that have no mistakes.
+    pub(super) fn of(checked: &Checked, report: &mut Collector<'_>) -> Self {
+        let parts = &checked.parts;
+        let body = match parts.get("body") {
+            Some(Json::Array(_)) => entries(parts, "body", report),
+            _ => vec![part(parts, "body", report)],
+        };
+        Self {
+            title: part(parts, "title", report),
+            gravity: part(parts, "gravity", report),
+            time: part(parts, "time", report),
+            body,
+            run: entries(parts, "run", report),
+            obstacle: entries(parts, "obstacle", report),
+            contact: part(parts, "contact", report),
+            hold: entries(parts, "hold", report),
+            grab: entries(parts, "grab", report),
+            view: part(parts, "view", report).unwrap_or_default(),
+        }
+    }
+
+    /// Whether nodes alone meet obstacles, and nothing else meets.
+    pub(super) fn meets_by_nodes(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.rule == Some(ContactRule::Nodes))
+    }
+
+    /// Leaves out the parts in which a check of this scene found mistakes.
+    pub(super) fn drop_mistakes(&mut self, checked: &Checked) {
+        fn drop<T>(entries: &mut [Option<T>], key: &str, checked: &Checked) {
+            for (at, entry) in entries.iter_mut().enumerate() {
+                let is_flawed = match checked.parts.get(key) {
+                    Some(Json::Array(parts)) => parts.get(at).is_none_or(Json::is_null),
+                    _ => checked.flawed.contains(key),
+                };
+                *entry = entry.take().filter(|_| !is_flawed);
+            }
+        }
+        drop(slice::from_mut(&mut self.time), "time", checked);
+        drop(slice::from_mut(&mut self.contact), "contact", checked);
+        drop(&mut self.body, "body", checked);
+        drop(&mut self.run, "run", checked);
+        drop(&mut self.obstacle, "obstacle", checked);
+        drop(&mut self.hold, "hold", checked);
+        drop(&mut self.grab, "grab", checked);
+        self.gravity = self.gravity.take().filter(|_| !checked.flawed.contains("gravity"));
+        if checked.flawed.contains("view") {
+            self.view = TypedView::default();
+        }
+    }
+}
+
+/// The part of a file at a key.
+fn part<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Option<T> {
+    typed(parts.get(key)?, &key_path![key], report)
+}
+
+/// The entries of a list in a file.
+fn entries<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Vec<Option<T>> {
+    let entries = parts.get(key).and_then(Json::as_array).into_iter().flatten().enumerate();
+    entries.map(|(at, entry)| typed(entry, &key_path![key, at], report)).collect()
+}
+
+/// A checked value at a path of a file as its type; `None` after a mistake in it.
+pub(super) fn typed<T: DeserializeOwned>(
+    checked: &Json,
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<T> {
+    let known = report.total();
+    // A required key may be missing after a mistake. Otherwise the schema has accepted the value, and an error of the
+    // types is unexpected.
+    let unexpected = |error: serde_json::Error| {
+        if known == 0 {
+            report.at(path, error.to_string(), None)
+        }
+    };
+    T::deserialize(checked).map_err(unexpected).ok().filter(|_| !checked.is_null())
+}
