@@ -2,6 +2,7 @@
 
 use super::lists::Lists;
 use super::motion::axis;
+use super::table::{BodyTable, Content};
 use super::{KeyPath, Typed, direction, elements, mass, mesh, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
@@ -11,56 +12,11 @@ use crate::scene::file::{BodyFile, Cells, Coordinates, FillKind, Lattice, SideFi
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::BodySize;
 use crate::sim::geometry::relative_stiffness;
-use crate::sim::{Body, BodyError, Carried, Dimension, IndexLists, Solids, State};
+use crate::sim::{Body, Carried, Dimension, IndexLists, Solids, State};
 use glam::DVec3;
-use localshape_mesh::{Cage, Filled, Group};
+use localshape_mesh::{Cage, Filled};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// The table of a body.
-#[derive(Debug)]
-pub(super) struct BodyTable<'a> {
-    pub(super) file: &'a BodyFile,
-    /// Its place in the scene.
-    pub(super) place: KeyPath,
-    /// Whether keys were left out because of mistakes, or lists have some.
-    pub(super) flawed: bool,
-}
-
-impl BodyTable<'_> {
-    /// The place of a key.
-    pub(super) fn at(&self, key: &'static str) -> KeyPath {
-        key_path![self.place; key]
-    }
-
-    /// The name of its mesh file.
-    pub(super) fn mesh(&self) -> &str {
-        self.file.mesh.as_deref().unwrap_or_default()
-    }
-
-    /// The interpretation of elements with four, five, six and eight nodes, unless they say.
-    fn solids(&self, usual: Solids) -> Solids {
-        if self.file.convex { Solids::Convex } else { usual }
-    }
-
-    /// A body, or `None` after reporting what the checks of its table have not found.
-    fn sound(&self, made: Result<Body, BodyError>, report: &mut Collector<'_>) -> Option<Body> {
-        made.map_err(|error| report.at(&self.place, error.to_string(), "correct its nodes, elements or masses")).ok()
-    }
-
-    /// The resolved body in an initial state, whose edges have a length (m), or else their mean one.
-    fn resolved(&self, body: Body, initial: State, side: Option<f64>) -> SceneBody {
-        SceneBody {
-            name: self.file.name.clone().unwrap_or_default(),
-            side: side.unwrap_or_else(|| elements::mean_edge(&body)),
-            body: Arc::new(body),
-            initial,
-            has_cells: false,
-            springs: None,
-            groups: Vec::new(),
-        }
-    }
-}
 
 /// A body whose nodes and elements are known, before it is made.
 #[derive(Debug)]
@@ -69,16 +25,6 @@ pub(super) struct TypedBody<'a> {
     content: Content<'a>,
     /// The key that names its own file, and the digest of its content.
     pub(super) digest: Option<(&'static str, String)>,
-}
-
-/// The nodes and elements of a body before it is made.
-#[derive(Debug)]
-pub(super) enum Content<'a> {
-    Generated(Generator<'a>),
-    /// Listed ones, and groups of nodes.
-    Listed(Box<Lists>, Vec<Group>),
-    /// A surface with the elements that fill it, and the length of their edges (m).
-    Filled(Box<Filled>, f64),
 }
 
 impl<'a> TypedBody<'a> {

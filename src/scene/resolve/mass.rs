@@ -1,6 +1,6 @@
 //! The masses of a body's nodes.
 
-use super::body::BodyTable;
+use super::table::BodyTable;
 use crate::reading::collector::{Collector, written};
 use crate::scene::file::LARGEST;
 use crate::sim::geometry::node_volumes;

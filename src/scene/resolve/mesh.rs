@@ -1,8 +1,8 @@
 //! Bodies of mesh files.
 
 use super::KeyPath;
-use super::body::{BodyTable, Content};
 use super::lists::{ListSource, Lists};
+use super::table::{BodyTable, Content};
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, several, short};
 use crate::scene::file::{FillFile, LARGEST, Positive, Up};

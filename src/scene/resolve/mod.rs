@@ -18,6 +18,7 @@ mod obstacles;
 mod recordings;
 mod runs;
 mod steps;
+mod table;
 
 use super::digest::{FileDigests, digest};
 use super::file::{BodyFile, Positive, SceneFile, TimeFile};
