@@ -22,6 +22,7 @@ mod sheet_layout;
 
 use crate::look::{ColourScale, Ghost, Labels, View, print};
 use crate::picture::caption::Writer;
+use crate::picture::chart::Stack;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::layout::steps::{FREE, NEAR};
@@ -48,93 +49,22 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     let palette = &figure.look.palette();
     let mut writer = Writer::new(palette, &fonts, scale);
     let scenes = plain(figure, sheet);
-    let reaches = cameras::reaches(&scenes, sheet, moments);
-    // The tiles of a scene share data that is computed once.
-    let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
-    let composer =
-        |(at, (scene, reach))| Composer { reach, traced: traced(at), ..Composer::new(scene, &History::default()) };
-    let mut composers: Vec<_> = scenes.iter().zip(reaches).enumerate().map(composer).collect();
-    let of_row = |row: &Vec<RunFrame>| -> Vec<_> {
-        row.iter().zip(&sheet.columns).map(|(run, of)| [of.scene, run.run]).collect()
-    };
-    let shown: Vec<_> = moments.cells.iter().flat_map(of_row).collect();
-    let (width, margin) = (f64::from(size[0]), scale.margin());
-    let room = width - 2.0 * margin;
+    let mut composers = composers(&scenes, sheet, moments);
+    let plan = Plan::new((figure, size), (sheet, moments), &mut composers, &writer);
+    let layout = &plan.layout;
+    let has_key = plan.write(&mut writer, sheet, moments);
 
-    let mut titles = writer.titles(scale, [&figure.title, &figure.caption], room);
-    if titles[0].is_empty() {
-        // The key stands beside the title or the caption.
-        titles[0].push(String::new());
-    }
-    let legend = Legend::of(&scenes[0].view, scale);
-    let has_charts = !sheet.charts.is_empty();
-    let charts = has_charts.then(|| charts::stack(sheet, &moments.histories, &writer, width));
-    let shows_runs = |scene: &Scene| matches!(scene.view.ghost, Some(Ghost::Run(_))) || !scene.view.paths.is_empty();
-    let with_sample = has_charts || scenes.iter().any(shows_runs);
-    let labels = RowLabels::new(sheet, &writer, with_sample, width);
-    let wanted = Wanted {
-        titles: titles.each_ref().map(Vec::len),
-        is_figure: true,
-        charts: charts.as_ref().map_or([0; 2], |charts| [charts.count(), charts.names()]),
-        legend: legend.map(|legend| legend.height),
-        ..Wanted::default()
-    };
-    let beside = charts.as_ref().map_or([0.0; 2], |charts| [charts.names_width, charts.numbers_width]);
-    let plan = |wanted: Wanted, pitch: f64| SheetLayout::new(sheet, (size, scale), wanted, &labels, beside, pitch);
-    // The width of tiles does not depend on what is above them.
-    let layout = plan(wanted, f64::INFINITY);
-    let pitch = f64::from(layout.tile_size()[0]);
-    below::unify(&mut composers, &shown, scale, &layout);
-    let headings = Headings::new(sheet, &writer, pitch);
-    let wanted = Wanted { headings: headings.lines(), ..wanted };
-    let layout = plan(wanted, pitch);
-    let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
-    let key = Key::new(&composers, &shown, has_flat);
-    let is_beside = |text: &&String| {
-        let length = key.width(&writer, text);
-        writer.beside(&layout.page, scale, &titles, [length, room]).map(|baseline| [width - margin, baseline])
-    };
-    let key_place = key.wordings.iter().find_map(|text| Some((text, is_beside(&text)?)));
-    if let Some((text, place)) = key_place {
-        key.write(&mut writer, text, place);
-    }
-    for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(&titles) {
-        writer.lines(&layout.page, part, scale, lines, margin);
-    }
-    labels.write(&mut writer, &layout.page, sheet);
-    headings.write(&mut writer, &layout);
-    if let Some(charts) = &charts {
-        let [left, _, tile, _] = layout.tile(0, 0).map(f64::from);
-        let right = left + tile * sheet.columns.len() as f64 - charts.ends_width();
-        let names = layout.page.get(Part::Words).map(|[left, ..]| left);
-        if let Some(room) = Room::new(&layout.page, scale, [left, right], names, true) {
-            charts::draw(charts, sheet, moments.histories[0].end, &mut writer, &room);
-        }
-    }
-
-    let framings = cameras::framings(&scenes, sheet, moments, &layout);
-    let mut below = Vec::new();
-    for (row, cells) in moments.cells.iter().enumerate() {
-        for (column, run) in cells.iter().enumerate() {
-            let composer = &composers[sheet.columns[column].scene];
-            below.push(([row, column], Below::new(&writer, &layout, composer, run, sheet.number)));
-        }
-    }
-    // All tiles have the same parts.
-    let fits = |&most: &usize| below.iter().all(|(_, below)| below.has_room(&writer, &layout, most));
-    let most = [2, 1].into_iter().find(fits).filter(|_| layout.page.get(Part::Numbers).is_some());
-    for (place, below) in &below {
-        most.iter().for_each(|&most| below.write(&mut writer, &layout, *place, most));
-    }
-    if let Some((legend, [_, top, ..])) = legend.zip(layout.page.get(Part::Legend)) {
+    let framings = cameras::framings(&scenes, sheet, moments, layout);
+    let most = write_below(&mut writer, layout, &composers, sheet, moments);
+    if let Some((legend, [_, top, ..])) = plan.legend.zip(layout.page.get(Part::Legend)) {
         let first = &composers[0];
         let samples = first.samples(legend, layout.tile(0, 0), &framings[0], layout.tile_scale);
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
-        legend.draw(&mut writer, [width, top], &samples, first.bar(&frame).as_ref());
+        legend.draw(&mut writer, [f64::from(size[0]), top], &samples, first.bar(&frame).as_ref());
     }
-    let lost = [(key_place.is_none(), Part::Key), (headings.is_cut, Part::Heading), (most.is_none(), Part::Numbers)];
+    let lost = [(!has_key, Part::Key), (plan.headings.is_cut, Part::Heading), (most.is_none(), Part::Numbers)];
     let lost: Vec<_> = lost.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, part)| part).collect();
     let mut left_out = layout::told(&layout.page, &lost);
     if sheet.number.is_some() && most == Some(1) {
@@ -142,24 +72,136 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     }
 
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
-    for (row, cells) in moments.cells.iter().enumerate() {
-        for (column, run) in cells.iter().enumerate() {
-            let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[column]);
-            let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
-            let [left, top, width, height] = draft.viewport;
-            let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
-            draft.ghost(&moments.others[row][column], room, &mut writer.curves);
-            draft.paths(&composer.traced, room, &mut writer.curves);
-            panels.push(draft.panel(&mut under, &mut marks));
-            // Surfaces without width are invisible.
-            let ends = cameras::collapsed(&draft);
-            writer.curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
-        }
+    for ([row, column], run) in cells(moments) {
+        let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[column]);
+        let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
+        let [left, top, width, height] = draft.viewport;
+        let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
+        draft.ghost(&moments.others[row][column], room, &mut writer.curves);
+        draft.paths(&composer.traced, room, &mut writer.curves);
+        panels.push(draft.panel(&mut under, &mut marks));
+        // Surfaces without width are invisible.
+        let ends = cameras::collapsed(&draft);
+        writer.curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
     }
     writer.over_bodies(&panels);
     marks.extend(writer.items());
     let ramp = composers.first().map_or_else(Vec::new, |composer| composer.ramp.clone());
     (Picture { size, palette: *palette, fonts, ramp, panels, under, above: marks }, left_out)
+}
+
+/// The composers of the scenes. The tiles of a scene share data that is computed once.
+fn composers<'s>(scenes: &'s [Scene], sheet: &Sheet, moments: &Moments) -> Vec<Composer<'s>> {
+    let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
+    let composer =
+        |(at, (scene, reach))| Composer { reach, traced: traced(at), ..Composer::new(scene, &History::default()) };
+    scenes.iter().zip(cameras::reaches(scenes, sheet, moments)).enumerate().map(composer).collect()
+}
+
+/// The cells of a sheet with their rows and columns.
+fn cells(moments: &Moments) -> impl Iterator<Item = ([usize; 2], &RunFrame)> {
+    let rows = moments.cells.iter().enumerate();
+    rows.flat_map(|(row, cells)| cells.iter().enumerate().map(move |(column, run)| ([row, column], run)))
+}
+
+/// The words of a sheet, and their places.
+struct Plan {
+    /// The lines of the title and of the caption.
+    titles: [Vec<String>; 2],
+    key: Key,
+    legend: Option<Legend>,
+    charts: Option<Stack>,
+    labels: RowLabels,
+    headings: Headings,
+    layout: SheetLayout,
+    /// The width of the picture (px).
+    width: f64,
+}
+
+impl Plan {
+    /// Plans a sheet of a size (px) in the type of a writer, and gives the tallies of all composers one style.
+    fn new(
+        (figure, size): (&Figure, [u32; 2]),
+        (sheet, moments): (&Sheet, &Moments),
+        composers: &mut [Composer<'_>],
+        writer: &Writer<'_>,
+    ) -> Self {
+        let (width, scale) = (f64::from(size[0]), writer.scale);
+        let mut titles = writer.titles(scale, [&figure.title, &figure.caption], width - 2.0 * scale.margin());
+        if titles[0].is_empty() {
+            // The key stands beside the title or the caption.
+            titles[0].push(String::new());
+        }
+        let legend = Legend::of(&composers[0].scene.view, scale);
+        let has_charts = !sheet.charts.is_empty();
+        let charts = has_charts.then(|| charts::stack(sheet, &moments.histories, writer, width));
+        let shows_runs = |view: &View| matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty();
+        let with_sample = has_charts || composers.iter().any(|composer| shows_runs(&composer.scene.view));
+        let labels = RowLabels::new(sheet, writer, with_sample, width);
+        let wanted = Wanted {
+            titles: titles.each_ref().map(Vec::len),
+            is_figure: true,
+            charts: charts.as_ref().map_or([0; 2], |charts| [charts.count(), charts.names()]),
+            legend: legend.map(|legend| legend.height),
+            ..Wanted::default()
+        };
+        let beside = charts.as_ref().map_or([0.0; 2], |charts| [charts.names_width, charts.numbers_width]);
+        let plan = |wanted: Wanted, pitch: f64| SheetLayout::new(sheet, (size, scale), wanted, &labels, beside, pitch);
+        // The width of tiles does not depend on what is above them.
+        let layout = plan(wanted, f64::INFINITY);
+        let pitch = f64::from(layout.tile_size()[0]);
+        let shown: Vec<_> = cells(moments).map(|([_, at], run)| [sheet.columns[at].scene, run.run]).collect();
+        below::unify(composers, &shown, scale, &layout);
+        let headings = Headings::new(sheet, writer, pitch);
+        let layout = plan(Wanted { headings: headings.lines(), ..wanted }, pitch);
+        let has_flat = cells(moments).any(|(_, run)| run.snapshot.flat.contains(&true));
+        let key = Key::new(composers, &shown, has_flat);
+        Self { titles, key, legend, charts, labels, headings, layout, width }
+    }
+
+    /// Writes the words around the tiles, and draws the charts. Returns whether the key of tallies has room.
+    fn write(&self, writer: &mut Writer<'_>, sheet: &Sheet, moments: &Moments) -> bool {
+        let Self { titles, key, charts, layout, width, .. } = self;
+        let (scale, margin) = (writer.scale, writer.scale.margin());
+        let is_beside = |text: &String| {
+            let room = [key.width(writer, text), width - 2.0 * margin];
+            writer.beside(&layout.page, scale, titles, room).map(|baseline| [width - margin, baseline])
+        };
+        let place = key.wordings.iter().find_map(|text| Some((text, is_beside(text)?)));
+        place.into_iter().for_each(|(text, place)| key.write(writer, text, place));
+        for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(titles) {
+            writer.lines(&layout.page, part, scale, lines, margin);
+        }
+        self.labels.write(writer, &layout.page, sheet);
+        self.headings.write(writer, layout);
+        if let Some(charts) = charts {
+            let [left, _, tile, _] = layout.tile(0, 0).map(f64::from);
+            let right = left + tile * sheet.columns.len() as f64 - charts.ends_width();
+            let names = layout.page.get(Part::Words).map(|[left, ..]| left);
+            if let Some(room) = Room::new(&layout.page, scale, [left, right], names, true) {
+                charts::draw(charts, sheet, moments.histories[0].end, writer, &room);
+            }
+        }
+        place.is_some()
+    }
+}
+
+/// Writes tallies and numbers below the bodies. All tiles have the same parts: returns how many, `None` without room for any.
+fn write_below(
+    writer: &mut Writer<'_>,
+    layout: &SheetLayout,
+    composers: &[Composer<'_>],
+    sheet: &Sheet,
+    moments: &Moments,
+) -> Option<usize> {
+    let below = |(at, run): ([usize; 2], _)| {
+        (at, Below::new(writer, layout, &composers[sheet.columns[at[1]].scene], run, sheet.number))
+    };
+    let all: Vec<_> = cells(moments).map(below).collect();
+    let fits = |&most: &usize| all.iter().all(|(_, below)| below.has_room(writer, layout, most));
+    let most = [2, 1].into_iter().find(fits).filter(|_| layout.page.get(Part::Numbers).is_some())?;
+    all.iter().for_each(|(at, below)| below.write(writer, layout, *at, most));
+    Some(most)
 }
 
 /// The scenes for their tiles: without words, in the look of the figure.
