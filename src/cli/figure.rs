@@ -5,14 +5,14 @@ use super::failure::{Failure, Status, note, warn_of_figure};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
-use super::still::{Drawn, Format, Still, replaceable, size_text};
+use super::still::{Still, StillFile, StillFormat, replaceable, size_text};
 use crate::gpu::{Gpu, adapter_name};
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
 use crate::picture::compose_figure;
 use crate::reading::setting::Setting;
 use crate::reading::words::nearest;
 use crate::runner::RunFrame;
-use crate::runner::moments::{Forces, Moments, Taking};
+use crate::runner::moments::{Moments, RunForces, Taking};
 use crate::scene::figure::built_in::NAMES;
 use crate::scene::figure::{Content, Figure};
 use crate::scene::{Limits, Scene, SceneError};
@@ -93,7 +93,7 @@ impl FigureCommand {
             console::print(&format!("figures: {}, fig4 (all of Fig. 4), all\n", NAMES.join(", ")))?;
             return Ok(Status::Done);
         }
-        Format::check_name(&self.out)?;
+        StillFormat::check_name(&self.out)?;
         self.threads.start()?;
         let mut figures = self.load()?;
         if !self.printing.quiet {
@@ -188,12 +188,12 @@ impl FigureCommand {
     }
 
     /// The format of the files.
-    fn format(&self) -> Format {
-        Format::of(&self.out).unwrap_or(Format::Png)
+    fn format(&self) -> StillFormat {
+        StillFormat::of(&self.out).unwrap_or(StillFormat::Png)
     }
 
     fn folder(&self) -> &Path {
-        if Format::of(&self.out).is_some() { folder_of(&self.out) } else { &self.out }
+        if StillFormat::of(&self.out).is_some() { folder_of(&self.out) } else { &self.out }
     }
 
     /// All requested figures, each once.
@@ -231,7 +231,7 @@ impl FigureCommand {
 
     /// The file of each figure. Files of other programs are not replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
-        if Format::of(&self.out).is_some() {
+        if StillFormat::of(&self.out).is_some() {
             return match figures {
                 [_] if self.overwrite => Ok(vec![self.out.clone()]),
                 [_] => replaceable(&self.out, self.format()).map(|()| vec![self.out.clone()]),
@@ -292,7 +292,7 @@ impl FigureCommand {
 
 /// A drawn figure, and its file.
 struct Made {
-    drawn: Drawn,
+    drawn: StillFile,
     file: AtomicFile,
 }
 
@@ -314,7 +314,7 @@ impl Made {
 fn numbers(figure: &Figure, moments: &Moments) -> Value {
     match &figure.content {
         Content::Forces(forces) => {
-            let of_scene = |(scene, found): (&Scene, &Vec<Forces>)| {
+            let of_scene = |(scene, found): (&Scene, &Vec<RunForces>)| {
                 let runs = scene.runs.iter().zip(found).map(|(run, found)| {
                     let of_body = |body: usize| {
                         let stiffness = run.models[body].properties(&run.bodies.bodies()[body]).stiffness;

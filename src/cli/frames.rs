@@ -9,9 +9,9 @@ pub(super) struct FrameRanges(Vec<Span>);
 
 /// `--at`: moments (s), such as `2s`, `500ms` or `2`, or several of these as `0.5,1`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Moments(Vec<f64>);
+pub(super) struct Instants(Vec<f64>);
 
-impl FromStr for Moments {
+impl FromStr for Instants {
     type Err = String;
 
     fn from_str(typed: &str) -> Result<Self, String> {
@@ -28,7 +28,7 @@ impl FromStr for Moments {
     }
 }
 
-impl Moments {
+impl Instants {
     /// The nearest frame to each moment, of a scene of a duration (s) that ends with frame `last`, at a rate (1/s).
     pub(super) fn nearest(&self, last: u64, duration: f64, rate: f64) -> Result<Vec<(f64, u64)>, String> {
         let nearest = |&time: &f64| {
@@ -193,14 +193,14 @@ mod tests {
 
     #[test]
     fn moments_have_the_nearest_frames() {
-        let nearest = |typed: &str| typed.parse::<Moments>().and_then(|moments| moments.nearest(180, 3.0, 60.0));
+        let nearest = |typed: &str| typed.parse::<Instants>().and_then(|moments| moments.nearest(180, 3.0, 60.0));
         let frames = |typed: &str| nearest(typed).unwrap().into_iter().map(|(_, frame)| frame).collect::<Vec<_>>();
         assert_eq!(frames("2s"), [120]);
         assert_eq!(frames("2, 500ms,0.51 s,0"), [120, 30, 31, 0]);
         assert_eq!(frames("3.008"), [180]);
         assert_eq!(nearest("9s").unwrap_err(), "there is no frame at 9 s; the last one is at 3 s");
         // The last frame at 29.97 a second is at 0.9676 s.
-        let late = |time: f64| Moments(vec![time]).nearest(29, 1.0, 29.97).map(|found| found[0].1);
+        let late = |time: f64| Instants(vec![time]).nearest(29, 1.0, 29.97).map(|found| found[0].1);
         assert_eq!([late(0.99), late(1.0)], [Ok(29), Ok(29)]);
         assert_eq!(late(1.1).unwrap_err(), "there is no frame at 1.1 s; the last one is at 0.9676 s");
         for typed in ["", "s", "2m", "-1", "nan", "1s2", "1,,2"] {

@@ -4,13 +4,13 @@ use super::console;
 use super::drawing::{Device, Drawing};
 use super::failure::{Failure, Status};
 use super::film::replaceable;
-use super::frames::{Moments, Shard};
+use super::frames::{Instants, Shard};
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
 use super::record::{self, AdapterOf, Begin};
 use super::scenes::{Wish, nearest};
 use super::still::{
-    Format as FileFormat, Still, check_print, one_frame, replaceable as replaceable_still, size_text, source_of,
+    Still, StillFormat, check_print, one_frame, replaceable as replaceable_still, size_text, source_of,
 };
 use crate::animation::Format;
 use crate::gpu::adapter_name;
@@ -67,7 +67,7 @@ pub(super) struct Render {
 
     /// Moments in place of frames, such as 2s, 500ms or 0.5,1: the nearest frame to each is made
     #[arg(long, value_name = "TIME", conflicts_with = "frames", allow_hyphen_values = true)]
-    at: Option<Moments>,
+    at: Option<Instants>,
 
     #[command(flatten)]
     device: DeviceOptions,
@@ -97,14 +97,14 @@ pub(super) struct Render {
 
 impl Render {
     pub(super) fn run(mut self, words: &[OsString]) -> Result<Status, Failure> {
-        self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
+        self.options.out.as_deref().map_or(Ok(()), StillFormat::check_name)?;
         // The theme is a key of the scene, so frames of two themes belong to two scenes.
         self.scenes.set.extend(self.theme.map(ThemeOption::setting));
         self.options.threads.start()?;
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
-        if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, FileFormat::of(out)?))) {
+        if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, StillFormat::of(out)?))) {
             return self.still(path, format, &scenes);
         }
         let films = self.films(scenes.len())?;
@@ -166,7 +166,7 @@ impl Render {
     }
 
     /// Draws one frame into a file of its own.
-    fn still(&self, path: &Path, format: FileFormat, scenes: &[Scene]) -> Result<Status, Failure> {
+    fn still(&self, path: &Path, format: StillFormat, scenes: &[Scene]) -> Result<Status, Failure> {
         let name = path.display();
         let [scene] = scenes else {
             bail!("{name} is a file for one frame; render the scenes one at a time, or into a folder");

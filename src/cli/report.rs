@@ -1,7 +1,7 @@
 //! The summary after a scene.
 
 use super::console::columns;
-use crate::output::{Numbers, Outcome, RunStatus, RunSummary, Spent, Summary};
+use crate::output::{Numbers, Outcome, RunEntry, RunStatus, Spent, Summary};
 use crate::reading::captions::quantity;
 use crate::reading::words::{several, short};
 use crate::sim::{Diagnostic, Unsolved};
@@ -45,7 +45,7 @@ fn made(summary: &Summary, folder: &Path) -> String {
 }
 
 /// The state of each run at the end, with what is broken if some run breaks.
-fn table(runs: &[RunSummary]) -> String {
+fn table(runs: &[RunEntry]) -> String {
     let heads = ["run", "status", "turned over", "broken", "shape error"].map(str::to_owned);
     let rows: Vec<_> = std::iter::once(heads).chain(runs.iter().flat_map(rows)).collect();
     if runs.iter().any(|run| run.last.as_ref().is_some_and(|last| last.all.broken.is_some())) {
@@ -56,7 +56,7 @@ fn table(runs: &[RunSummary]) -> String {
 }
 
 /// The row of a run, and one of each of its bodies if there are several.
-fn rows(run: &RunSummary) -> Vec<[String; 5]> {
+fn rows(run: &RunEntry) -> Vec<[String; 5]> {
     let mut status = match &run.status {
         RunStatus::Ok => "ok".to_owned(),
         RunStatus::Ended { time } => format!("recording ends at {} s", short(*time)),
@@ -86,7 +86,7 @@ fn rows(run: &RunSummary) -> Vec<[String; 5]> {
 
 /// Why runs diverged, one line each.
 fn causes(summary: &Summary) -> String {
-    let line = |run: &RunSummary| Some(format!("{} diverged: {}\n", run.name, run.cause.as_ref()?.words));
+    let line = |run: &RunEntry| Some(format!("{} diverged: {}\n", run.name, run.cause.as_ref()?.words));
     summary.runs.iter().filter_map(line).collect()
 }
 
@@ -105,7 +105,7 @@ pub(super) fn unsolved(summary: &Summary) -> impl Iterator<Item = String> {
 
 /// A warning for each run whose body leaves its panel.
 fn cut(summary: &Summary) -> String {
-    let warning = |run: &RunSummary| {
+    let warning = |run: &RunEntry| {
         let first = run.cut.first()?;
         let (count, all) = (run.cut.len(), summary.frames.written.unwrap_or(summary.frames.recorded));
         let help = "move the camera back, or let it follow the body: `view.camera` without `target` and `distance`";

@@ -4,7 +4,7 @@ use super::failure::{Failure, note, with_causes};
 use crate::output::export::Export;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
-use crate::runner::{Frame, Frames, Row};
+use crate::runner::{Frame, Frames, TableRow};
 use crate::sim::Diagnostic;
 use std::time::{Duration, Instant};
 
@@ -46,7 +46,12 @@ impl Results<'_> {
     }
 
     /// Takes a frame with its states, and the rows of each run before it.
-    pub(super) fn take(&mut self, frame: &Frame, between: &[Vec<Row>], frames: &Frames<'_>) -> Result<(), Failure> {
+    pub(super) fn take(
+        &mut self,
+        frame: &Frame,
+        between: &[Vec<TableRow>],
+        frames: &Frames<'_>,
+    ) -> Result<(), Failure> {
         let Self { diagnostics, states, export, pictures, .. } = self;
         diagnostics.iter_mut().try_for_each(|diagnostics| diagnostics.write(frame, between))?;
         if let Some(states) = states {

@@ -1,7 +1,7 @@
 //! Reads and checks the scenes on a command line.
 
 use super::failure::{Failure, Status, complain, warn, with_causes};
-use super::frames::{FrameRanges, Moments, Shard};
+use super::frames::{FrameRanges, Instants, Shard};
 use super::options::{RunOptions, SceneOptions};
 use crate::output::{Access, Folder, Manifest, OutputError, Whose, recorded};
 use crate::output::{export, shell};
@@ -89,7 +89,7 @@ pub(super) struct Wish<'a> {
     /// Whether states are read, so that no checkpoint is needed.
     pub(super) from_states: bool,
     /// The requested moments, if frames are chosen by `--at`.
-    pub(super) at: Option<&'a Moments>,
+    pub(super) at: Option<&'a Instants>,
 }
 
 impl RunOptions {
@@ -145,7 +145,7 @@ impl RunOptions {
     }
 
     /// The requested frames of a scene, in rising order.
-    pub(super) fn frames(&self, scene: &Scene, at: Option<&Moments>) -> Result<Vec<u64>, Failure> {
+    pub(super) fn frames(&self, scene: &Scene, at: Option<&Instants>) -> Result<Vec<u64>, Failure> {
         if let Some(at) = at {
             let mut frames: Vec<_> = nearest(at, scene)?.into_iter().map(|(_, frame)| frame).collect();
             frames.sort_unstable();
@@ -159,7 +159,7 @@ impl RunOptions {
 }
 
 /// The nearest frame of a scene to each moment (s).
-pub(super) fn nearest(at: &Moments, scene: &Scene) -> Result<Vec<(f64, u64)>, Failure> {
+pub(super) fn nearest(at: &Instants, scene: &Scene) -> Result<Vec<(f64, u64)>, Failure> {
     let found = at.nearest(scene.last_frame(), scene.duration, scene.frames_per_second);
     found.map_err(|message| Failure::usage(format!("--at: in “{}” {message}", scene.title)))
 }

@@ -20,13 +20,13 @@ use std::path::Path;
 
 /// The format of a file of one picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
+pub(super) enum StillFormat {
     /// Pixels.
     Png,
     Vector(vector::Format),
 }
 
-impl Format {
+impl StillFormat {
     /// The format for the name of a file; `None` for names of folders.
     pub(super) fn of(path: &Path) -> Option<Self> {
         if path.is_dir() {
@@ -88,17 +88,19 @@ pub(super) fn one_frame(
 }
 
 /// The size of a file of one picture, as it is reported: of paper for a vector file with such a size, else in pixels.
-pub(super) fn size_text(format: Format, [width, height]: [u32; 2], print: Option<&Print>) -> String {
+pub(super) fn size_text(format: StillFormat, [width, height]: [u32; 2], print: Option<&Print>) -> String {
     match (format, print) {
-        (Format::Vector(_), Some(Print { mm: [wide, high], .. })) => format!("{} × {} mm", short(*wide), short(*high)),
+        (StillFormat::Vector(_), Some(Print { mm: [wide, high], .. })) => {
+            format!("{} × {} mm", short(*wide), short(*high))
+        }
         _ => format!("{width}×{height}"),
     }
 }
 
 /// Refuses to replace a file that is not a figure or single frame of this program.
-pub(super) fn replaceable(path: &Path, format: Format) -> Result<(), Failure> {
+pub(super) fn replaceable(path: &Path, format: StillFormat) -> Result<(), Failure> {
     match format {
-        Format::Png if path.is_file() && read_tags(path)?.is_some() => Ok(()),
+        StillFormat::Png if path.is_file() && read_tags(path)?.is_some() => Ok(()),
         _ => film::replaceable(path),
     }
 }
@@ -155,16 +157,16 @@ pub(super) struct Still<'a> {
 
 impl Still<'_> {
     /// Draws the picture, with a device if one is needed.
-    pub(super) fn draw(&self, format: Format, gpu: Option<&Gpu>) -> Result<Drawn, Failure> {
+    pub(super) fn draw(&self, format: StillFormat, gpu: Option<&Gpu>) -> Result<StillFile, Failure> {
         let picture = self.picture;
         check_type(self.print, picture, self.source)?;
         match format {
-            Format::Png => {
+            StillFormat::Png => {
                 let pixels = draw(gpu, picture)?;
                 let dpi = self.print.map(|print| print.dpi);
-                Ok(Drawn::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
+                Ok(StillFile::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
             }
-            Format::Vector(format) => {
+            StillFormat::Vector(format) => {
                 let size_mm = self.print.map(|print| print.mm);
                 let bodies = vector::bodies(picture, size_mm).map(|lit| draw(gpu, &lit)).transpose()?;
                 let page = Page {
@@ -175,7 +177,7 @@ impl Still<'_> {
                     maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),
                     tags: self.tags,
                 };
-                vector::write(&page, format).map(Drawn::Vectors).map_err(|error| Failure::usage(error.to_string()))
+                vector::write(&page, format).map(StillFile::Vectors).map_err(|error| Failure::usage(error.to_string()))
             }
         }
     }
@@ -187,14 +189,14 @@ fn draw(gpu: Option<&Gpu>, picture: &Picture) -> Result<Vec<u8>, RenderError> {
 }
 
 /// A drawn picture.
-pub(super) enum Drawn {
+pub(super) enum StillFile {
     /// Pixels that are not compressed yet, which takes longest.
     Pixels { size: [u32; 2], pixels: Vec<u8>, tags: Vec<(&'static str, String)>, dpi: Option<f64> },
     /// The file.
     Vectors(Vec<u8>),
 }
 
-impl Drawn {
+impl StillFile {
     pub(super) fn file(self) -> Vec<u8> {
         match self {
             Self::Pixels { size, pixels, tags, dpi } => encode_print(size, &pixels, &tags, Compression::Small, dpi),

@@ -91,8 +91,8 @@ fn check(bytes: &[u8]) -> Result<(), String> {
 #[cfg(feature = "render")]
 fn letters(bytes: &[u8]) -> Result<(), String> {
     /// Whether an outline has anything.
-    struct Drawn(bool);
-    impl ttf_parser::OutlineBuilder for Drawn {
+    struct Outlined(bool);
+    impl ttf_parser::OutlineBuilder for Outlined {
         fn move_to(&mut self, _: f32, _: f32) {}
         fn line_to(&mut self, _: f32, _: f32) {
             self.0 = true;
@@ -108,7 +108,7 @@ fn letters(bytes: &[u8]) -> Result<(), String> {
     let font = ttf_parser::Face::parse(bytes, 0)
         .map_err(|_| format!("begins like a font but is damaged or cut short; {EXPECTED}"))?;
     let drawn = |character: &char| {
-        let mut outline = Drawn(false);
+        let mut outline = Outlined(false);
         font.glyph_index(*character).is_some_and(|glyph| font.outline_glyph(glyph, &mut outline).is_some()) && outline.0
     };
     let needed = ('0'..='9').chain('A'..='Z').chain('a'..='z');

@@ -4,7 +4,7 @@
 //! `diagnostics.csv`, have hidden files of their own. The checkpoint stores how long they were when it was written.
 
 use super::atomic::{remove, sync_folder};
-use super::states::Written;
+use super::states::CourseSoFar;
 use super::{Extremes, OutputError, Whose, read_file, write_whole};
 use crate::runner::Progress;
 use crate::runner::cause::Cause;
@@ -62,7 +62,7 @@ pub(crate) struct Checkpoint {
     /// The rows of the frames written so far; `None` if no frame is written before the end of the simulation.
     pub(crate) rows: Option<Grown>,
     /// The states written so far, if states are written.
-    pub(crate) course: Option<(Written, Grown)>,
+    pub(crate) course: Option<(CourseSoFar, Grown)>,
 }
 
 impl Checkpoint {

@@ -3,7 +3,7 @@
 
 use super::atomic::remove;
 use super::{OutputError, exact, rows_as_csv};
-use crate::runner::Row;
+use crate::runner::TableRow;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::{Frame, RunFrame};
 use crate::scene::{ALL_BODIES, Scene};
@@ -63,7 +63,7 @@ impl<'a> DiagnosticsWriter<'a> {
     ///
     /// # Errors
     /// If they cannot be written; rows written before stay.
-    pub(crate) fn write(&mut self, frame: &Frame, between: &[Vec<Row>]) -> Result<(), OutputError> {
+    pub(crate) fn write(&mut self, frame: &Frame, between: &[Vec<TableRow>]) -> Result<(), OutputError> {
         let mut rows = Vec::new();
         for (place, RunFrame { run, snapshot, .. }) in frame.runs.iter().enumerate() {
             let run = &self.scene.runs[*run];
@@ -74,7 +74,7 @@ impl<'a> DiagnosticsWriter<'a> {
             };
             // The step of a frame has the row of the frame.
             let between = between.get(place).into_iter().flatten().filter(|row| row.time < snapshot.time);
-            for Row { time, all, of_bodies } in between {
+            for TableRow { time, all, of_bodies } in between {
                 add(None, *time, Status::Ok, all, of_bodies);
             }
             add(Some(frame.index), snapshot.time, snapshot.status, &snapshot.diagnostics, &snapshot.of_bodies);

@@ -33,13 +33,13 @@ pub(crate) struct FrameWriter {
     folder: PathBuf,
     /// Greatest number of threads.
     most: usize,
-    threads: Vec<JoinHandle<Written>>,
-    written: Written,
+    threads: Vec<JoinHandle<FramesWritten>>,
+    written: FramesWritten,
 }
 
 /// The result of one thread or of all.
 #[derive(Debug, Default)]
-struct Written {
+struct FramesWritten {
     frames: usize,
     spent: Spent,
     failure: Option<OutputError>,
@@ -58,7 +58,7 @@ impl FrameWriter {
             folder: folder.to_owned(),
             most: most.max(1),
             threads: Vec::new(),
-            written: Written::default(),
+            written: FramesWritten::default(),
         }
     }
 
@@ -129,9 +129,9 @@ fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
 }
 
 /// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
-fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>, last: &Last) -> Written {
+fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>, last: &Last) -> FramesWritten {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut written = Written::default();
+    let mut written = FramesWritten::default();
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();

@@ -38,7 +38,7 @@ pub(crate) use frame_name::FRAME_FILES;
 pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
-pub(crate) use summary::{Numbers, Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
+pub(crate) use summary::{Numbers, Outcome, RunEntry, RunStatus, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
 pub(crate) use whose::Whose;

@@ -3,7 +3,7 @@
 use super::{AtomicFile, OutputError};
 use crate::runner::Frame;
 use crate::runner::growing::{Growing, Grown};
-use crate::runner::history::{History, Row};
+use crate::runner::history::{History, TableRow};
 use crate::scene::npy::begin;
 use crate::scene::{COURSE, Course, Origin, Run, Scene, SceneBody, StoredRun};
 use crate::sim::{Assembly, State, Status};
@@ -48,7 +48,7 @@ pub(crate) struct StatesWriter {
     /// The names of the scene's bodies, if it has several.
     names: Vec<String>,
     meshes: Vec<Mesh>,
-    arrays: Vec<Array>,
+    arrays: Vec<StatesArray>,
     /// Length of one frame in the temporary file (bytes).
     record: u64,
     /// Whether each run has its own times.
@@ -56,17 +56,17 @@ pub(crate) struct StatesWriter {
     /// The time step of each run (s).
     steps: Vec<f64>,
     origin: Origin,
-    written: Written,
+    written: CourseSoFar,
 }
 
 /// What is written about states besides the arrays; it grows with each frame.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Written {
+pub(crate) struct CourseSoFar {
     course: Course,
     /// The time series of the scene, if its pictures need them and it was simulated to its end.
     history: Option<History>,
     /// The rows between frames of each run, by its number in the scene.
-    rows: BTreeMap<usize, VecDeque<Row>>,
+    rows: BTreeMap<usize, VecDeque<TableRow>>,
 }
 
 /// The bodies of a run.
@@ -81,7 +81,7 @@ struct Mesh {
 
 /// One array of the archive, and its part of each record.
 #[derive(Debug)]
-struct Array {
+struct StatesArray {
     name: String,
     /// The dimensions after the number of frames, in Python's notation.
     shape: String,
@@ -102,10 +102,10 @@ impl StatesWriter {
         scene: &Scene,
         runs: &[usize],
         states: impl Iterator<Item = &'s State>,
-        before: Option<(Written, Grown)>,
+        before: Option<(CourseSoFar, Grown)>,
     ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
-        let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
+        let mut arrays = vec![StatesArray { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
         let step = |run: usize| scene.runs[run].step;
         let steps: Vec<f64> = runs.iter().map(|&run| step(run)).collect();
@@ -114,7 +114,7 @@ impl StatesWriter {
         for ((&run, &own_time), state) in runs.iter().zip(&own_time).zip(states) {
             if own_time {
                 let name = format!("{}.time", scene.runs[run].name);
-                arrays.push(Array { name, shape: String::new(), offset: record, length: 8 });
+                arrays.push(StatesArray { name, shape: String::new(), offset: record, length: 8 });
                 record += 8;
             }
             let nodes = state.position.len();
@@ -126,7 +126,7 @@ impl StatesWriter {
                 ("memory", format!(" {memory}"), 8 * memory),
             ] {
                 let name = format!("{}.{quantity}", scene.runs[run].name);
-                arrays.push(Array { name, shape, offset: record, length });
+                arrays.push(StatesArray { name, shape, offset: record, length });
                 record += length as u64;
             }
             let name = scene.runs[run].name.clone();
@@ -145,7 +145,7 @@ impl StatesWriter {
         let names = scene.bodies.iter().map(name).filter(|_| scene.bodies.len() > 1).collect();
         let origin = Origin::new(&scene.digest, &scene.title);
         let hidden = folder.join(SPOOL);
-        let is_whole = |(before, grown): &(Written, Grown)| {
+        let is_whole = |(before, grown): &(CourseSoFar, Grown)| {
             before.course.fits(&stored) && grown.length == before.course.frames.len() as u64 * record
         };
         let (written, spool) = match before {
@@ -156,7 +156,8 @@ impl StatesWriter {
                 (before, Growing::open(&hidden, Some(grown)).map_err(OutputError::reading(&hidden))?)
             }
             None => {
-                let written = Written { course: Course { runs: stored, ..Course::default() }, ..Written::default() };
+                let written =
+                    CourseSoFar { course: Course { runs: stored, ..Course::default() }, ..CourseSoFar::default() };
                 (written, Growing::open(&hidden, None).map_err(OutputError::writing(&path))?)
             }
         };
@@ -170,7 +171,7 @@ impl StatesWriter {
     pub(crate) fn write<'s>(
         &mut self,
         frame: &Frame,
-        between: &[Vec<Row>],
+        between: &[Vec<TableRow>],
         states: impl Iterator<Item = &'s State>,
     ) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
@@ -238,7 +239,7 @@ impl StatesWriter {
     }
 
     /// Makes the frames written so far survive a power failure.
-    pub(crate) fn sync(&mut self) -> io::Result<(Written, Grown)> {
+    pub(crate) fn sync(&mut self) -> io::Result<(CourseSoFar, Grown)> {
         Ok((self.written.clone(), self.spool.sync()?))
     }
 
@@ -267,7 +268,7 @@ impl StatesWriter {
 
     fn fill(&mut self, archive: &mut ZipWriter<BufWriter<&mut File>>) -> io::Result<()> {
         let mut part = Vec::new();
-        let Written { course, .. } = &self.written;
+        let CourseSoFar { course, .. } = &self.written;
         let frames = course.frames.len() as u64;
         for array in &self.arrays {
             let shape = format!("({frames},{})", array.shape);

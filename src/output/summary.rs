@@ -2,7 +2,7 @@
 
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
-use crate::runner::{Frame, Row, TimeSeries};
+use crate::runner::{Frame, TableRow, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub(crate) const SUMMARY_FILE: &str = "run.json";
 pub(crate) struct Summary {
     /// Version of this crate.
     pub localshape: String,
-    pub scene: SceneSummary,
+    pub scene: SceneEntry,
     /// The command line, one entry for each argument.
     pub command: Vec<String>,
     /// Keys and values of `--set`, as typed; absent if there are none.
@@ -30,7 +30,7 @@ pub(crate) struct Summary {
     /// The graphics adapter; `null` without pictures.
     pub adapter: Option<String>,
     /// The requested runs, in the scene's order.
-    pub runs: Vec<RunSummary>,
+    pub runs: Vec<RunEntry>,
     /// A line on each animation.
     #[serde(skip)]
     pub films: Vec<String>,
@@ -44,7 +44,7 @@ pub(crate) struct Summary {
 
 /// Identifies the scene.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct SceneSummary {
+pub(crate) struct SceneEntry {
     pub title: String,
     /// Its file, as a full path; `null` if it was parsed from a text.
     pub file: Option<String>,
@@ -94,7 +94,7 @@ pub(crate) struct FrameSummary {
 
 /// The result of a run.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct RunSummary {
+pub(crate) struct RunEntry {
     pub name: String,
     /// The names of its bodies; absent if its only body has no name.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -201,7 +201,7 @@ impl Summary {
     pub(crate) fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
         let run = |&run: &usize| {
             let run = &scene.runs[run];
-            RunSummary {
+            RunEntry {
                 name: run.name.clone(),
                 bodies: run.body_names(scene).map(str::to_owned).collect(),
                 time_step: run.step,
@@ -216,7 +216,7 @@ impl Summary {
         };
         Self {
             localshape: env!("CARGO_PKG_VERSION").to_owned(),
-            scene: SceneSummary {
+            scene: SceneEntry {
                 title: scene.title.clone(),
                 file: scene.file.as_ref().and_then(|file| Some(file.to_str()?.to_owned())),
                 relative_file: None,
@@ -237,7 +237,7 @@ impl Summary {
     }
 
     /// Records the values of a frame, and of the rows of each run before it.
-    pub(crate) fn note(&mut self, frame: &Frame, between: &[Vec<Row>]) {
+    pub(crate) fn note(&mut self, frame: &Frame, between: &[Vec<TableRow>]) {
         for (summary, rows) in self.runs.iter_mut().zip(between) {
             rows.iter().for_each(|row| summary.extremes.note(Diagnostic::ALL, row.time, &row.all));
         }

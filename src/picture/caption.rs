@@ -91,13 +91,13 @@ impl<'a> Writer<'a> {
 
 /// The edges of the room for words in a panel (px).
 #[derive(Clone, Copy)]
-pub(super) struct Room {
+pub(super) struct WordRoom {
     pub(super) left: f64,
     right: f64,
     pub(super) top: f64,
 }
 
-impl Room {
+impl WordRoom {
     pub(super) fn new(panel: Rectangle, scale: Scale) -> Self {
         let [left, top, width, _] = panel.map(f64::from);
         let margin = scale.margin();
@@ -182,7 +182,7 @@ impl Writer<'_> {
 
     /// Letter, name and second line, upper left. `taken` (px) is kept free at the right of each line.
     pub(super) fn heading(&mut self, panel: Rectangle, heading: &Heading<'_>, taken: [f64; 2]) {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let free = taken.map(|taken| room.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 });
         let baseline = room.top + lines.title;
@@ -245,7 +245,7 @@ impl Writer<'_> {
 
     /// Whether the heading leaves no room for the clock.
     pub(super) fn is_crowded(&self, panel: Rectangle, heading: &Heading<'_>, label: &str) -> bool {
-        let free = Room::new(panel, self.scale).width() - self.scale.gap();
+        let free = WordRoom::new(panel, self.scale).width() - self.scale.gap();
         let clock = self.clock_room(panel, label);
         self.heading_width(heading).iter().zip(clock).any(|(heading, clock)| heading + clock > free)
     }
@@ -258,13 +258,13 @@ impl Writer<'_> {
     }
 
     fn clock_label(&self, panel: Rectangle, label: &str) -> String {
-        let room = LABEL_SHARE * Room::new(panel, self.scale).width();
+        let room = LABEL_SHARE * WordRoom::new(panel, self.scale).width();
         self.fonts.shortened(label, Weight::Regular, self.scale.caption(), room)
     }
 
     /// The clock with its label, upper right.
     pub(super) fn clock(&mut self, panel: Rectangle, time: f64, label: &str) {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let time = self.fonts.shortened(&number::time(time), Weight::Regular, title, room.width());
         self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
@@ -298,7 +298,7 @@ impl Writer<'_> {
         (tally, names): (&Tally, &[&str]),
         snapshot: &Snapshot,
     ) {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let Snapshot { turned_over, flat, broken, broken_springs, .. } = snapshot;
         let states = [&turned_over[..], &flat[..], &broken[..]];
@@ -355,7 +355,7 @@ impl Writer<'_> {
 
     /// A number with its name, lower right, in the longest wording with room right of a place from the left margin (px).
     pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         // A number without its name means nothing.
         if !Scale::legible(caption) && !number.is_loud {
@@ -382,7 +382,7 @@ impl Writer<'_> {
         [from, to]: [f64; 2],
         mut bars: impl Iterator<Item = (String, f64)>,
     ) -> Option<f64> {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption, colour) = (self.scale.unit, self.scale.caption(), self.palette.second_text);
         let (text, pixels) = bars.find(|(text, pixels)| self.bar_width(text, *pixels) <= to - from + 1e-6)?;
         let middle = room.left + from.midpoint(to);

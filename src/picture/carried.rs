@@ -5,9 +5,9 @@ use super::chart::needed;
 use super::field::NOWHERE;
 use super::narrow::{narrow, narrow_count, narrow_point};
 use super::page::{self, joined};
-use super::shadow::{Shape, edges};
+use super::shadow::{SurfaceCaster, edges};
 use super::shell::Side;
-use super::surface::{Border, HATCH_PERIOD, SurfaceLines, Surroundings, newell};
+use super::surface::{Border, HATCH_PERIOD, SurfaceContext, SurfaceLines, newell};
 use super::{LineKind, Mesh, Vertex};
 use crate::carried::append_positions;
 use crate::look::BODIES;
@@ -57,7 +57,7 @@ pub(super) struct Fine {
     /// Whether each edge has triangles on both sides.
     is_closed: bool,
     /// What casts its shadow.
-    pub(super) shape: Shape,
+    pub(super) shape: SurfaceCaster,
 }
 
 /// A triangle at a moment.
@@ -130,7 +130,7 @@ impl Fine {
             is_closed: !beside.as_flattened().contains(&NONE),
             beside,
             creases,
-            shape: Shape::new(&surface.rest, triangles),
+            shape: SurfaceCaster::new(&surface.rest, triangles),
         }
     }
 
@@ -243,7 +243,7 @@ fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
     surface.triangles.par_iter().with_min_len(OF_THREAD).map(of_triangle).collect()
 }
 
-impl Surroundings<'_> {
+impl SurfaceContext<'_> {
     /// Adds a carried surface with its points at positions (m) to the meshes of sound and of turned-over elements, and its
     /// lines to the lines. `of_nodes` has the places of nodes on the scale of a field, if there is one.
     pub(super) fn add_carried(

@@ -57,7 +57,7 @@ impl Cuts {
 
 /// The pieces of a bilinear patch.
 #[derive(Debug, Default)]
-pub(super) struct Grid {
+pub(super) struct CutPatch {
     /// The points: their coordinates in both directions, and the weight of each corner.
     pub(super) points: Vec<([f64; 2], [f64; 4])>,
     /// The corners of the small triangles, as places in `points`.
@@ -66,7 +66,7 @@ pub(super) struct Grid {
     pub(super) sides: [Vec<u32>; 4],
 }
 
-impl Grid {
+impl CutPatch {
     fn new(cut: Cut) -> Self {
         if cut.sides == [cut.cells; 4] { Self::even(u32::from(cut.cells)) } else { Self::uneven(cut) }
     }
@@ -152,11 +152,11 @@ fn cell(across: u32) -> impl Fn(u32) -> [[u32; 3]; 2] {
 
 /// The grids used so far.
 #[derive(Default)]
-pub(super) struct Grids(HashMap<Cut, Grid>);
+pub(super) struct CutPatches(HashMap<Cut, CutPatch>);
 
-impl Grids {
-    pub(super) fn of(&mut self, cut: Cut) -> &Grid {
-        self.0.entry(cut).or_insert_with(|| Grid::new(cut))
+impl CutPatches {
+    pub(super) fn of(&mut self, cut: Cut) -> &CutPatch {
+        self.0.entry(cut).or_insert_with(|| CutPatch::new(cut))
     }
 }
 
@@ -172,7 +172,7 @@ mod tests {
             (0..5_u32.pow(4)).map(move |at| (cells, [0, 1, 2, 3].map(|side| more(at, side))))
         });
         for (cells, sides) in few.chain([(3, [24; 4]), (23, [24, 23, 24, 23]), (24, [24; 4])]) {
-            let grid = Grid::new(Cut { cells, sides });
+            let grid = CutPatch::new(Cut { cells, sides });
             let place = |at: u32| grid.points[at as usize].0;
             let area = |&[a, b, c]: &[u32; 3]| {
                 let [a, b, c] = [a, b, c].map(place);

@@ -1,7 +1,7 @@
 //! Pictures made by hand, such as plots of measurements.
 
 use super::caption::Writer;
-use super::chart::{Chart, Place};
+use super::chart::{Chart, PlotArea};
 use super::layout::Scale;
 use super::text::{Fonts, Weight};
 use super::{Item, Picture};
@@ -48,7 +48,7 @@ impl Diagram {
     pub fn chart(&mut self, chart: &Chart, [left, top, right, bottom]: [f64; 4]) {
         let Picture { palette, fonts, under, above, .. } = &mut self.picture;
         let mut writer = Writer::new(palette, fonts, Scale::REFERENCE);
-        let place = Place { left, right, top, bottom, unit: 1.0, line: 1.0 };
+        let place = PlotArea { left, right, top, bottom, unit: 1.0, line: 1.0 };
         chart.ground(&mut writer, place, true);
         chart.curves(&mut writer, place);
         under.append(&mut writer.marks);

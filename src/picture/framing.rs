@@ -23,7 +23,7 @@ const MOMENTS: usize = 100;
 
 /// The bodies of a run at a moment.
 #[derive(Clone, Debug)]
-pub(super) struct Moment<'a> {
+pub(super) struct SeenMoment<'a> {
     /// The time (s).
     pub(super) time: f64,
     pub(super) run: usize,
@@ -33,7 +33,7 @@ pub(super) struct Moment<'a> {
     pub(super) is_sound: bool,
 }
 
-impl Moment<'_> {
+impl SeenMoment<'_> {
     /// The greatest distance of the centre of a body from that of all (m).
     fn spread(&self) -> f64 {
         let CameraBoxes { centre, bodies } = &*self.seen;
@@ -66,14 +66,14 @@ pub(super) struct Shot {
 
 impl Seen {
     /// The boxes of moments of a scene; `None` without moments.
-    pub(super) fn new(scene: &Scene, moments: &[Moment<'_>], follows: bool) -> Option<Self> {
+    pub(super) fn new(scene: &Scene, moments: &[SeenMoment<'_>], follows: bool) -> Option<Self> {
         let view = &scene.view;
         let usual = usual(scene)?;
         let largest = |sizes: &[f64]| sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let sound = || moments.iter().filter(|moment| moment.is_sound);
         // The greatest size of each body of the scene.
         let mut most = vec![None; usual.len()];
-        for Moment { run, seen, .. } in sound() {
+        for SeenMoment { run, seen, .. } in sound() {
             for (&of, body) in scene.runs[*run].of.iter().zip(&seen.bodies) {
                 most[of] = Some(most[of].map_or(body.size(), |most: f64| most.max(body.size())));
             }
@@ -81,7 +81,7 @@ impl Seen {
         let limited =
             |(most, &usual): (&Option<f64>, &f64)| most.unwrap_or(f64::INFINITY).clamp(usual, MOST_GROWTH * usual);
         let most: Vec<f64> = most.iter().zip(&usual).map(limited).collect();
-        let farthest = sound().map(Moment::spread).reduce(f64::max).unwrap_or(f64::INFINITY);
+        let farthest = sound().map(SeenMoment::spread).reduce(f64::max).unwrap_or(f64::INFINITY);
         let axes = axes(view.camera.azimuth, view.camera.elevation);
         let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         let mut all = Self { axes, bodies: none, all: none, apart: none, widest: 0.2 * largest(&usual) };

@@ -4,7 +4,7 @@ use super::Item;
 use super::arrows;
 use super::caption::Writer;
 use super::chart::axis::{Kind, Stretch};
-use super::chart::{Axis, Chart, Place};
+use super::chart::{Axis, Chart, PlotArea};
 use super::ghost;
 use super::layout::steps::{BESIDE, BLOCK, MARGIN, NAME_ROW, SHORT, SMALL, STRONG, TEXT, TILE};
 use super::layout::tree::{self, Node};
@@ -201,7 +201,7 @@ impl Legend {
         let left = (middle - whole / 2.0).clamp(left, (left + width - whole).max(left));
         let height = (BESIDE * unit).round().max(2.0);
         let bar_left = (left + named + gap).round();
-        let place = Place { left: bar_left, right: bar_left + length, top, bottom: top + height, unit, line: unit };
+        let place = PlotArea { left: bar_left, right: bar_left + length, top, bottom: top + height, unit, line: unit };
         let chart = Chart { x: Axis(vec![bar.axis.clone()]), ..Chart::default() };
         chart.ground(writer, place, true);
         writer.left(&name, Weight::SemiBold, size, palette.text, left, top + 0.5 * height + 0.34 * size);

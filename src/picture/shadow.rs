@@ -135,7 +135,7 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
 
 /// What casts the shadow of a carried surface: the surface or, if that is fine, another one with some of its points.
 #[derive(Debug)]
-pub(super) struct Shape {
+pub(super) struct SurfaceCaster {
     /// Its points among those of the surface.
     pub(super) points: Vec<u32>,
     triangles: Vec<[u32; 3]>,
@@ -144,7 +144,7 @@ pub(super) struct Shape {
     stands_for: usize,
 }
 
-impl Shape {
+impl SurfaceCaster {
     /// The shape of a surface with points at rest (m).
     ///
     /// One point stands for all in a cell of a grid whose normals look the same way, so that thin parts keep both their sides
@@ -219,7 +219,7 @@ impl<'a> Casters<'a> {
     }
 
     /// Adds the shape of a carried surface with its points at places.
-    pub(super) fn add_shape(&mut self, points: impl Iterator<Item = DVec3>, shape: &Shape) {
+    pub(super) fn add_shape(&mut self, points: impl Iterator<Item = DVec3>, shape: &SurfaceCaster) {
         self.count += shape.stands_for;
         self.extend(points, &shape.triangles, &shape.edges);
     }

@@ -2,7 +2,7 @@
 //! so they are in one long file.
 
 use super::camera::Lens;
-use super::cut::{Cuts, Grid, Grids};
+use super::cut::{CutPatch, CutPatches, Cuts};
 use super::ears::Ears;
 use super::field::Shades;
 use super::measures::SMALLEST_ELEMENT;
@@ -41,7 +41,7 @@ const FINE: f64 = 40.0;
 const DARK: f64 = 13.0;
 
 /// The data for turning faces into the parts of a panel.
-pub(super) struct Surroundings<'a> {
+pub(super) struct SurfaceContext<'a> {
     pub(super) bodies: &'a Assembly,
     pub(super) ears: &'a Ears,
     pub(super) position: &'a [DVec3],
@@ -194,7 +194,7 @@ impl FaceSides {
     }
 }
 
-impl Surroundings<'_> {
+impl SurfaceContext<'_> {
     /// All bodies as one.
     fn body(&self) -> &Body {
         self.bodies.whole()
@@ -220,7 +220,7 @@ impl Surroundings<'_> {
         if faces.is_empty() {
             return;
         }
-        let (cuts, mut grids) = (self.cuts(faces, total), Grids::default());
+        let (cuts, mut grids) = (self.cuts(faces, total), CutPatches::default());
         // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
@@ -350,7 +350,7 @@ impl Surroundings<'_> {
         side: &Side,
         ears: Option<&[[u32; 3]]>,
         dots: Option<f64>,
-        grid: Option<&Grid>,
+        grid: Option<&CutPatch>,
         patch: &mut Patch,
         mesh: &mut Mesh,
     ) {
@@ -457,7 +457,7 @@ fn bilinear(nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
 }
 
 /// Records coordinates of the points of a face that are 0 or 255 at its sides.
-fn note_edges(patch: &Patch, grid: Option<&Grid>, edges: &mut Vec<[u8; 4]>) {
+fn note_edges(patch: &Patch, grid: Option<&CutPatch>, edges: &mut Vec<[u8; 4]>) {
     const INSIDE: u8 = 128;
     match (grid, patch.points.len() - patch.nodes.len()) {
         (Some(grid), _) => edges.extend(grid.points.iter().map(|&([u, v], _)| {
@@ -474,7 +474,13 @@ fn note_edges(patch: &Patch, grid: Option<&Grid>, edges: &mut Vec<[u8; 4]>) {
 }
 
 /// Records the component towards the viewer of the normals along the sides of a face.
-fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, grid: Option<&Grid>, cuts: &Cuts, borders: &mut FaceSides) {
+fn note_borders(
+    patch: &Patch,
+    ears: Option<&[[u32; 3]]>,
+    grid: Option<&CutPatch>,
+    cuts: &Cuts,
+    borders: &mut FaceSides,
+) {
     let Patch { nodes, facing, .. } = patch;
     let face = borders.normals.len() as u32;
     borders.normals.push(newell(&patch.corners).normalize_or_zero());

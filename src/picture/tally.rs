@@ -20,7 +20,7 @@ const RIM: f64 = 0.14;
 /// The elements of each body in rows, highest layer first; each row in the order of the elements.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tally {
-    blocks: Vec<Block>,
+    blocks: Vec<BodyTally>,
     /// The number of elements.
     count: usize,
     dimension: Dimension,
@@ -28,7 +28,7 @@ pub(super) struct Tally {
 
 /// The elements of one body.
 #[derive(Clone, Debug, PartialEq)]
-struct Block {
+struct BodyTally {
     elements: Range<usize>,
     /// The elements in rows; empty if the tally is a bar.
     rows: Vec<Vec<usize>>,
@@ -36,7 +36,7 @@ struct Block {
     are_layers: bool,
 }
 
-impl Block {
+impl BodyTally {
     /// Groups the elements of a body into layers of equal height at rest. Bodies without such layers get rows of equal
     /// length.
     fn new(bodies: &Assembly, body: usize, side: f64) -> Self {
@@ -76,7 +76,7 @@ impl Tally {
     /// The tally of some bodies, with cells of a side (m).
     pub(super) fn new(bodies: &Assembly, side: f64) -> Self {
         let count = bodies.whole().elements().len();
-        let blocks = (0..bodies.bodies().len()).map(|body| Block::new(bodies, body, side)).collect();
+        let blocks = (0..bodies.bodies().len()).map(|body| BodyTally::new(bodies, body, side)).collect();
         let tally = Self { blocks, count, dimension: bodies.whole().dimension() };
         if count > MOST_SQUARES { tally.as_bar() } else { tally }
     }
@@ -88,7 +88,8 @@ impl Tally {
 
     /// The tally as bars.
     pub(super) fn as_bar(&self) -> Self {
-        let bar = |block: &Block| Block { elements: block.elements.clone(), rows: Vec::new(), are_layers: false };
+        let bar =
+            |block: &BodyTally| BodyTally { elements: block.elements.clone(), rows: Vec::new(), are_layers: false };
         Self { blocks: self.blocks.iter().map(bar).collect(), ..*self }
     }
 
@@ -123,7 +124,7 @@ impl Tally {
 
     /// The number of columns of all bodies, with an empty one between two bodies.
     fn columns(&self) -> usize {
-        self.blocks.iter().map(Block::columns).sum::<usize>() + self.blocks.len().saturating_sub(1)
+        self.blocks.iter().map(BodyTally::columns).sum::<usize>() + self.blocks.len().saturating_sub(1)
     }
 
     /// The number of rows of the body with the most.

@@ -14,13 +14,13 @@ pub(crate) struct Setting {
     /// The text as typed.
     text: String,
     /// The parts of the key, and their places in the text.
-    parts: Vec<(Part, Range<usize>)>,
+    parts: Vec<(Segment, Range<usize>)>,
     /// The place of the value in the text.
     value: Range<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Part {
+enum Segment {
     /// Into a table.
     Key(String),
     /// Into an array.
@@ -38,7 +38,7 @@ impl FromStr for Setting {
         let (mut parts, mut at) = (Vec::new(), 0);
         loop {
             let end = at + text[at..].find(|c| !is_key(c)).filter(|&length| length > 0).ok_or(EXPECTED)?;
-            parts.push((Part::Key(text[at..end].to_owned()), at..end));
+            parts.push((Segment::Key(text[at..end].to_owned()), at..end));
             at = end;
             while let Some(rest) = text[at..].strip_prefix('[') {
                 // A shell removes the quotation marks, unless others are around the option.
@@ -46,7 +46,7 @@ impl FromStr for Setting {
                 let length = rest.find(close).ok_or(EXPECTED)?;
                 let inside = rest[..length].trim_start_matches('"');
                 let index = inside.parse().ok().filter(|_| close == "]");
-                let part = index.map_or_else(|| Part::Named(inside.to_owned()), Part::Index);
+                let part = index.map_or_else(|| Segment::Named(inside.to_owned()), Segment::Index);
                 let end = at + 1 + length + close.len();
                 parts.push((part, at..end));
                 at = end;
@@ -88,11 +88,11 @@ impl Setting {
         let mut slot = root;
         for (number, (part, span)) in self.parts.iter().enumerate() {
             let here = || self.text[..span.start].trim_end_matches('.');
-            let then_array = self.parts.get(number + 1).is_some_and(|(next, _)| !matches!(next, Part::Key(_)));
+            let then_array = self.parts.get(number + 1).is_some_and(|(next, _)| !matches!(next, Segment::Key(_)));
             let wrong = |(message, help)| Wrong { span: at(span), message, help };
             slot = match part {
-                Part::Key(key) => in_table(slot, key, at(span), then_array, here).map_err(wrong)?,
-                Part::Index(_) | Part::Named(_) => in_array(slot, part, here()).map_err(wrong)?,
+                Segment::Key(key) => in_table(slot, key, at(span), then_array, here).map_err(wrong)?,
+                Segment::Index(_) | Segment::Named(_) => in_array(slot, part, here()).map_err(wrong)?,
             };
         }
         *slot = new;
@@ -145,7 +145,7 @@ fn in_table<'s, 't>(
 /// The entry of the array at `here`.
 fn in_array<'s, 't>(
     slot: &'s mut Spanned<DeValue<'t>>,
-    part: &Part,
+    part: &Segment,
     here: &str,
 ) -> Result<&'s mut Spanned<DeValue<'t>>, Told> {
     let what = found(slot.get_ref());
@@ -162,17 +162,19 @@ fn in_array<'s, 't>(
         _ => format!("has {count} entries, numbers 0 to {}", count - 1),
     };
     let index = match part {
-        Part::Index(index) => *index,
-        Part::Named(name) => entries.iter().position(|entry| named(entry).as_ref() == Some(name)).ok_or_else(|| {
-            let rest = match &names[..] {
-                [] => format!("`{here}` {entries_are}"),
-                names => format!("their names are {}", list(names, "and", quoted)),
-            };
-            let names: Vec<_> = names.iter().map(String::as_str).collect();
-            let help = nearest(name, &names).map(|near| format!("did you mean {}?", quoted(near)));
-            (format!("no entry of `{here}` has the name {}; {rest}", quoted(name)), help)
-        })?,
-        Part::Key(_) => unreachable!("the caller tells keys from entries"),
+        Segment::Index(index) => *index,
+        Segment::Named(name) => {
+            entries.iter().position(|entry| named(entry).as_ref() == Some(name)).ok_or_else(|| {
+                let rest = match &names[..] {
+                    [] => format!("`{here}` {entries_are}"),
+                    names => format!("their names are {}", list(names, "and", quoted)),
+                };
+                let names: Vec<_> = names.iter().map(String::as_str).collect();
+                let help = nearest(name, &names).map(|near| format!("did you mean {}?", quoted(near)));
+                (format!("no entry of `{here}` has the name {}; {rest}", quoted(name)), help)
+            })?
+        }
+        Segment::Key(_) => unreachable!("the caller tells keys from entries"),
     };
     entries.get_mut(index).ok_or_else(|| (format!("there is no `{here}[{index}]`; `{here}` {entries_are}"), None))
 }

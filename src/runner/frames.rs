@@ -3,7 +3,7 @@
 
 use super::growing::{Growing, Grown};
 use super::last_fit::Fitting;
-use super::{Frame, History, Row, RunFrame, Runner, Running, Stored, TimeSeries};
+use super::{Frame, History, RunFrame, Runner, Running, Stored, TableRow, TimeSeries};
 use crate::sim::State;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ pub(crate) struct Progress {
     /// The time series so far.
     history: History,
     /// The rows between frames of each run that are not taken yet.
-    rows: Vec<Option<VecDeque<Row>>>,
+    rows: Vec<Option<VecDeque<TableRow>>>,
     /// The results of [`Frames::last_fit`] for each run, with states as bytes.
     last_fits: Vec<Option<StoredFit>>,
     /// Whether the bodies of each run need not be watched any more.
@@ -279,7 +279,7 @@ impl<'a> Frames<'a> {
     }
 
     /// The rows of each run after the last frame, to the step of this one, which was returned; none before the first frame.
-    pub(crate) fn take_rows(&mut self, frame: &Frame) -> Vec<Vec<Row>> {
+    pub(crate) fn take_rows(&mut self, frame: &Frame) -> Vec<Vec<TableRow>> {
         let is_first = self.taken == 1;
         let of_run = |(running, run): (&mut Running, &RunFrame)| {
             let (time, rows) = (run.snapshot.time, running.rows.get_or_insert_default());

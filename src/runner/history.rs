@@ -89,7 +89,7 @@ impl TimeSeries {
 
 /// A row of `diagnostics.csv` between frames: the diagnostics of all bodies of a run together, and of each if it has several.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Row {
+pub(crate) struct TableRow {
     /// The time of the step (s).
     pub(crate) time: f64,
     pub(crate) all: Diagnostics,

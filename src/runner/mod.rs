@@ -18,7 +18,7 @@ use crate::sim::{
 };
 pub use frame::{Frame, LastFit, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
-pub(crate) use history::Row;
+pub(crate) use history::TableRow;
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};
 use meetings::Watch;
@@ -52,7 +52,7 @@ struct Running {
     body: Arc<Body>,
     series: TimeSeries,
     /// Its rows between frames, until they are taken; `None` if nobody wants them.
-    rows: Option<VecDeque<Row>>,
+    rows: Option<VecDeque<TableRow>>,
     /// The threads within the run.
     threads: usize,
     /// Whether the run is drawn.
@@ -358,7 +358,7 @@ impl Running {
         let (all, of_bodies) = world.diagnostics_by_body(if row.is_some() { Diagnostic::ALL } else { wanted });
         if let Some(rows) = row {
             let time = steps as f64 * self.step;
-            rows.push_back(Row { time, all, of_bodies: of_bodies.clone() });
+            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone() });
         }
         if is_noted {
             self.note(scene, steps, (all, of_bodies));

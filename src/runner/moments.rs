@@ -20,12 +20,12 @@ pub struct Moments {
     /// show them, and with the last cell if only paths need them. Empty for other scenes and other figures.
     pub histories: Vec<History>,
     /// The forces of each run of each scene, for a diagram of forces; empty for other figures.
-    pub forces: Vec<Vec<Forces>>,
+    pub forces: Vec<Vec<RunForces>>,
 }
 
 /// A run at its start and the forces there.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Forces {
+pub struct RunForces {
     /// The state.
     pub snapshot: Snapshot,
     /// The internal forces on each node (N), after Eq. (1) or Eq. (4) of the paper, without gravity.
@@ -93,13 +93,13 @@ pub(crate) struct Taking<'a> {
     figure: &'a Figure,
     /// The diagnostics of its states.
     wanted: Vec<Diagnostic>,
-    parts: Vec<Part<'a>>,
+    parts: Vec<ShownRun<'a>>,
     /// For each scene the parts with time series of its runs, if these are shown.
     series: Vec<Vec<usize>>,
 }
 
 /// One run, advanced through its shown moments.
-struct Part<'a> {
+struct ShownRun<'a> {
     /// Index of the scene, and of the run in it.
     of: [usize; 2],
     runner: Runner<'a>,
@@ -122,13 +122,13 @@ impl<'a> Taking<'a> {
     }
 
     fn of_sheet(figure: &'a Figure, sheet: &'a Sheet, wanted: Vec<Diagnostic>) -> Self {
-        let mut parts: Vec<Part<'a>> = Vec::new();
+        let mut parts: Vec<ShownRun<'a>> = Vec::new();
         let mut part = |of: [usize; 2]| match parts.iter().position(|part| part.of == of) {
             Some(known) => known,
             None => {
                 // Most sheets show more runs than there are threads.
                 let runner = Runner::among(usize::MAX, &sheet.scenes[of[0]], &[of[1]]).with_diagnostics(&wanted);
-                parts.push(Part { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
+                parts.push(ShownRun { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
                 parts.len() - 1
             }
         };
@@ -152,7 +152,7 @@ impl<'a> Taking<'a> {
         let others: Vec<_> = others.collect();
         let shown = shown.into_iter().map(Some).chain(others).enumerate();
         for (at, (part, moment)) in shown.filter_map(|(at, shown)| Some((at, shown?))) {
-            let Part { runner, stops, end, .. } = &mut parts[part];
+            let ShownRun { runner, stops, end, .. } = &mut parts[part];
             let steps = runner.steps_at(moment);
             match stops.binary_search_by_key(&steps, |stop| runner.steps_at(stop.0)) {
                 Ok(place) => stops[place].1.push(at),
@@ -182,7 +182,7 @@ impl<'a> Taking<'a> {
     pub(crate) fn advance(&mut self, most_steps: u64) -> Option<[u64; 2]> {
         let arrived = self.parts.par_iter_mut().map(|part| part.advance(most_steps));
         let arrived = arrived.reduce(|| true, |one, other| one && other);
-        let steps = |[done, all]: [u64; 2], part: &Part<'_>| {
+        let steps = |[done, all]: [u64; 2], part: &ShownRun<'_>| {
             [done.saturating_add(part.runner.steps()), all.saturating_add(part.runner.steps_at(part.end))]
         };
         (!arrived).then(|| self.parts.iter().fold([0; 2], steps))
@@ -225,7 +225,7 @@ impl<'a> Taking<'a> {
                 let of_run = |scene: &Scene, run: usize| {
                     let mut world = scene.world(run);
                     world.want(&self.wanted);
-                    Forces { snapshot: world.snapshot(), on_nodes: world.forces() }
+                    RunForces { snapshot: world.snapshot(), on_nodes: world.forces() }
                 };
                 let of_scene = |scene: &Scene| (0..scene.runs.len()).map(|run| of_run(scene, run)).collect();
                 Moments { forces: forces.scenes.iter().map(of_scene).collect(), ..Moments::default() }
@@ -234,7 +234,7 @@ impl<'a> Taking<'a> {
     }
 }
 
-impl Part<'_> {
+impl ShownRun<'_> {
     fn advance(&mut self, most_steps: u64) -> bool {
         let mut left = most_steps;
         while let Some(&(stop, _)) = self.stops.get(self.taken.len()) {

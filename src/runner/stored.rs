@@ -1,6 +1,6 @@
 //! Stored states of a scene: recordings of its runs, from which frames are drawn without simulating, and its time series.
 
-use super::{History, Row};
+use super::{History, TableRow};
 use crate::scene::{Archive, COURSE, Course, Flaw, Recorded, Scene};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub(crate) struct Stored {
     pub(super) recordings: Vec<Arc<Recorded>>,
     pub(super) history: Option<History>,
     /// The rows between frames of each run, by its number in the scene.
-    pub(super) rows: BTreeMap<usize, VecDeque<Row>>,
+    pub(super) rows: BTreeMap<usize, VecDeque<TableRow>>,
 }
 
 impl Stored {

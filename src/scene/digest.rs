@@ -69,9 +69,9 @@ pub(super) fn digest(typed: &SceneFile, files: FileDigests) -> String {
     value.sort_all_objects();
     let written = bodies.iter().zip(typed.body.iter().flatten());
     let mut written: Vec<_> =
-        written.map(|(body, typed)| Part::Table(table(body).into_iter().chain(lists(typed)).collect())).collect();
+        written.map(|(body, typed)| Canonical::Table(table(body).into_iter().chain(lists(typed)).collect())).collect();
     let mut scene = table(&value);
-    scene.insert("body", if written.len() == 1 { written.remove(0) } else { Part::List(written) });
+    scene.insert("body", if written.len() == 1 { written.remove(0) } else { Canonical::List(written) });
     let mut hash = Hash(Sha256::new());
     serde_json::to_writer(BufWriter::new(&mut hash), &scene).expect("hashing cannot fail");
     hash.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
@@ -80,10 +80,10 @@ pub(super) fn digest(typed: &SceneFile, files: FileDigests) -> String {
 /// An entry of the canonical scene.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Part<'a> {
+enum Canonical<'a> {
     Value(&'a Value),
-    Table(BTreeMap<&'a str, Part<'a>>),
-    List(Vec<Part<'a>>),
+    Table(BTreeMap<&'a str, Canonical<'a>>),
+    List(Vec<Canonical<'a>>),
     Points(&'a [Coordinates]),
     Indices(&'a [Vec<u32>]),
     Pairs(&'a [[u32; 2]]),
@@ -91,20 +91,20 @@ enum Part<'a> {
 }
 
 /// The entries of a table.
-fn table(value: &Value) -> BTreeMap<&str, Part<'_>> {
-    value.as_object().into_iter().flatten().map(|(key, value)| (key.as_str(), Part::Value(value))).collect()
+fn table(value: &Value) -> BTreeMap<&str, Canonical<'_>> {
+    value.as_object().into_iter().flatten().map(|(key, value)| (key.as_str(), Canonical::Value(value))).collect()
 }
 
 /// The lists of a body.
-fn lists(body: &BodyFile) -> impl Iterator<Item = (&str, Part<'_>)> {
+fn lists(body: &BodyFile) -> impl Iterator<Item = (&str, Canonical<'_>)> {
     let lists = [
-        ("nodes", body.nodes.as_deref().map(Part::Points)),
-        ("elements", body.elements.as_deref().map(Part::Indices)),
-        ("springs", body.springs.as_deref().map(Part::Pairs)),
-        ("faces", body.faces.as_deref().map(Part::Indices)),
-        ("positions", body.positions.as_deref().map(Part::Points)),
-        ("velocities", body.velocities.as_deref().map(Part::Points)),
-        ("masses", body.masses.as_deref().map(Part::Numbers)),
+        ("nodes", body.nodes.as_deref().map(Canonical::Points)),
+        ("elements", body.elements.as_deref().map(Canonical::Indices)),
+        ("springs", body.springs.as_deref().map(Canonical::Pairs)),
+        ("faces", body.faces.as_deref().map(Canonical::Indices)),
+        ("positions", body.positions.as_deref().map(Canonical::Points)),
+        ("velocities", body.velocities.as_deref().map(Canonical::Points)),
+        ("masses", body.masses.as_deref().map(Canonical::Numbers)),
     ];
     lists.into_iter().filter_map(|(key, list)| Some((key, list?)))
 }

@@ -49,7 +49,7 @@ impl Sequence {
             true => (numbered(folder, file, rate)?, None),
             false => listed(folder, file, limits, &mut notes)?,
         };
-        let first = Moment::read(&moments[0], limits)?;
+        let first = ReadMoment::read(&moments[0], limits)?;
         check_length(moments.len() as u64, first.cells.points.len() as u64, limits)?;
         let is_displaced = first.cells.displacements.is_some() && is_at_rest(&moments, &first, limits)?;
         let (archive, moves) = copied(&moments, &first, step, is_displaced, limits)?;
@@ -84,13 +84,13 @@ struct Listed {
 
 /// ParaView's list of files in JSON (`.vtu.series`).
 #[derive(Deserialize)]
-struct Series {
-    files: Vec<InSeries>,
+struct SeriesFile {
+    files: Vec<SeriesEntry>,
 }
 
 /// A file of such a list.
 #[derive(Deserialize)]
-struct InSeries {
+struct SeriesEntry {
     name: String,
     /// Its time (s).
     time: f64,
@@ -100,12 +100,12 @@ struct InSeries {
 fn series(bytes: &[u8]) -> Result<Vec<mesh::Listed>, Wrong> {
     const EXPECTED: &str = "expected { \"files\": [{ \"name\": \"a.vtu\", \"time\": 0 }] }";
     let wrong = |found: String| (format!("{found}; {EXPECTED}"), None);
-    let Series { files } =
+    let SeriesFile { files } =
         serde_json::from_slice(bytes).map_err(|error| wrong(format!("is no list of files over time: {error}")))?;
     if files.is_empty() {
         return Err(wrong("lists no file".to_owned()));
     }
-    Ok(files.into_iter().map(|InSeries { name, time }| mesh::Listed { time, file: name, part: None }).collect())
+    Ok(files.into_iter().map(|SeriesEntry { name, time }| mesh::Listed { time, file: name, part: None }).collect())
 }
 
 /// The moments in a list of files in the order of their times, and the time step (s) if the list tells it.
@@ -211,7 +211,7 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
 
 /// A moment as read.
 #[derive(Clone, Default)]
-struct Moment {
+struct ReadMoment {
     /// The name of its file, or of the first of them.
     name: String,
     /// Its time (s).
@@ -224,7 +224,7 @@ struct Moment {
     is_welded: bool,
 }
 
-impl Moment {
+impl ReadMoment {
     fn read(listed: &Listed, limits: &Limits) -> Result<Self, Flaw> {
         let first = name_of(&listed.files[0]);
         let name = if listed.files.len() == 1 { first } else { format!("{first} and others") };
@@ -363,9 +363,9 @@ fn append(all: &mut Cells, other: Cells) {
 }
 
 /// Whether the points of all moments are those of the first.
-fn is_at_rest(moments: &[Listed], first: &Moment, limits: &Limits) -> Result<bool, Flaw> {
+fn is_at_rest(moments: &[Listed], first: &ReadMoment, limits: &Limits) -> Result<bool, Flaw> {
     for listed in &moments[1..] {
-        if Moment::read(listed, limits)?.cells.points != first.cells.points {
+        if ReadMoment::read(listed, limits)?.cells.points != first.cells.points {
             return Ok(false);
         }
     }
@@ -388,7 +388,7 @@ fn step_in(bytes: &[u8]) -> Option<f64> {
 /// file of their own until all positions are there.
 fn copied(
     moments: &[Listed],
-    first: &Moment,
+    first: &ReadMoment,
     step: Option<f64>,
     is_displaced: bool,
     limits: &Limits,
@@ -401,19 +401,19 @@ fn copied(
     let mut velocities = BufWriter::new(tempfile::tempfile().map_err(failed)?);
     let (mut times, moves) = (Vec::new(), first.cells.velocities.is_some());
     begin(&mut zip, "position", "<f8", &shape, length).map_err(failed)?;
-    let mut copy = |moment: &Moment| -> io::Result<()> {
+    let mut copy = |moment: &ReadMoment| -> io::Result<()> {
         times.push(moment.time);
         moment.cells.points.iter().try_for_each(|point| vector(&mut zip, point))?;
         // Either all moments have velocities or none.
         let mut all = moment.cells.velocities.iter().filter(|_| moves).flatten();
         all.try_for_each(|one| vector(&mut velocities, one))
     };
-    let displaced = |moment: Moment| if is_displaced { moment.displaced() } else { Ok(moment) };
+    let displaced = |moment: ReadMoment| if is_displaced { moment.displaced() } else { Ok(moment) };
     let mut last = displaced(first.clone())?;
     copy(&last).map_err(failed)?;
     let mut is_moving = false;
     for listed in &moments[1..] {
-        let moment = displaced(Moment::read(listed, limits)?.joined_like(first)?)?;
+        let moment = displaced(ReadMoment::read(listed, limits)?.joined_like(first)?)?;
         moment.check_after(&last)?;
         copy(&moment).map_err(failed)?;
         is_moving |= moment.cells.points != last.cells.points;

@@ -129,7 +129,7 @@ fn a_coarse_shape_is_closed_and_casts_nearly_the_same_shadow() {
         })
         .collect();
     assert!(triangles.len() > 3 * OF_SHAPE);
-    let shape = Shape::new(&points, &triangles);
+    let shape = SurfaceCaster::new(&points, &triangles);
     assert!(shape.triangles.len() <= OF_SHAPE && shape.triangles.len() > OF_SHAPE / 4, "{}", shape.triangles.len());
     assert!(shape.edges.iter().all(|edge| edge.triangles().iter().all(Option::is_some)));
     let edges = edges(&triangles);

@@ -42,11 +42,11 @@ struct Document {
     channels: Vec<String>,
     /// The length of the binary data so far, with motions.
     length: u64,
-    blocks: Vec<Block>,
+    blocks: Vec<Chunk>,
 }
 
 /// A piece of the binary data.
-enum Block {
+enum Chunk {
     Bytes(Vec<u8>),
     /// The motions of the nodes of a body.
     Motions(usize),
@@ -54,7 +54,7 @@ enum Block {
 
 impl Document {
     /// Appends binary data, and returns the number of its view.
-    fn view(&mut self, block: Block, length: u64, target: &str) -> usize {
+    fn view(&mut self, block: Chunk, length: u64, target: &str) -> usize {
         let view = format!("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{length}{target}}}", self.length);
         self.views.push(view);
         self.length += length;
@@ -65,7 +65,7 @@ impl Document {
     /// Appends an array of its own, and returns its number. `more` are further properties.
     fn array(&mut self, bytes: Vec<u8>, target: &str, component: u32, kind: &str, count: usize, more: &str) -> usize {
         let length = bytes.len() as u64;
-        let view = self.view(Block::Bytes(bytes), length, target);
+        let view = self.view(Chunk::Bytes(bytes), length, target);
         self.accessor(view, 0, component, kind, count, more)
     }
 
@@ -133,7 +133,7 @@ impl Document {
         self.nodes.push(format!("{{\"name\":{name},\"mesh\":{mesh},\"skin\":{skin}}}"));
         self.roots.extend([parent, parent + 1]);
         let length = 12 * frames as u64;
-        let view = self.view(Block::Motions(place), length * joints as u64, "");
+        let view = self.view(Chunk::Motions(place), length * joints as u64, "");
         for (joint, at) in rest.iter().enumerate() {
             self.nodes.push(format!("{{\"translation\":{}}}", ends(*at)));
             let motion = self.accessor(view, length * joint as u64, FLOAT, "VEC3", frames, "");
@@ -207,8 +207,8 @@ pub(super) fn write(
     to.write_all(b"BIN\0")?;
     for block in &document.blocks {
         match block {
-            Block::Bytes(bytes) => to.write_all(bytes)?,
-            Block::Motions(place) => motions(to, &run.bodies[*place], course)?,
+            Chunk::Bytes(bytes) => to.write_all(bytes)?,
+            Chunk::Motions(place) => motions(to, &run.bodies[*place], course)?,
         }
     }
     Ok(())

@@ -63,7 +63,7 @@ pub(crate) struct Export<'a> {
     folder: PathBuf,
     formats: Vec<Format>,
     /// The grids of the runs, if they are written.
-    grids: Vec<FilesOf<Grid>>,
+    grids: Vec<FilesOf<UnstructuredGrid>>,
     /// The surfaces of the runs, if they are written.
     surfaces: Vec<FilesOf<Surface>>,
     /// The requested frames, those of other shards included.
@@ -91,7 +91,7 @@ struct OfBody<T> {
 }
 
 /// A grid of a body: its elements, or the surface that they carry.
-struct Grid {
+struct UnstructuredGrid {
     cells: Cells,
     body: Arc<Body>,
     carried: Option<Arc<Carried>>,
@@ -110,7 +110,7 @@ impl<'a> Export<'a> {
         frames: &[u64],
     ) -> Result<Self, OutputError> {
         let wants_grids = formats.contains(&Format::Vtu);
-        let grids = if wants_grids { Grid::all(scene, runs) } else { Vec::new() };
+        let grids = if wants_grids { UnstructuredGrid::all(scene, runs) } else { Vec::new() };
         let wants_surfaces = formats.iter().any(|&format| format != Format::Vtu);
         let surface = |body: &Arc<Body>| wants_surfaces.then(|| Surface::of(body));
         let surfaces = FilesOf::all(scene, runs, "", surface);
@@ -155,11 +155,11 @@ impl<'a> Export<'a> {
     }
 
     /// The grid of a body in a frame of its run.
-    fn grid(&self, of: &OfBody<Grid>, frame: u64, run: &RunFrame) -> Vec<u8> {
+    fn grid(&self, of: &OfBody<UnstructuredGrid>, frame: u64, run: &RunFrame) -> Vec<u8> {
         let Snapshot { time, position, velocity, turned_over, broken, field, .. } = &run.snapshot;
         let mark = mark(self.scene, Some(frame));
         let [position, velocity] = [position, velocity].map(|all| &all[of.nodes.clone()]);
-        let Grid { cells, body, carried } = &of.shown;
+        let UnstructuredGrid { cells, body, carried } = &of.shown;
         if let Some(carried) = carried {
             let velocity = positions(carried, velocity);
             let of_points = [Column::Vectors("velocity", &velocity)];
@@ -286,9 +286,9 @@ impl FilesOf<Surface> {
     }
 }
 
-impl FilesOf<Grid> {
+impl FilesOf<UnstructuredGrid> {
     /// The file of a body in a frame, below the output folder.
-    fn grid_file(&self, body: &OfBody<Grid>, frame: u64) -> String {
+    fn grid_file(&self, body: &OfBody<UnstructuredGrid>, frame: u64) -> String {
         format!("{}/{}_{frame:05}.vtu", self.stem, file_name(body.title()))
     }
 }
@@ -305,7 +305,7 @@ fn or_body(name: &str) -> &str {
     if name.is_empty() { "body" } else { name }
 }
 
-impl Grid {
+impl UnstructuredGrid {
     /// The grids of elements of some runs, each followed by those of surfaces that bodies of the run carry.
     fn all(scene: &Scene, runs: &[usize]) -> Vec<FilesOf<Self>> {
         let grid = |body: &Arc<Body>, cells, carried| Self { cells, body: Arc::clone(body), carried };

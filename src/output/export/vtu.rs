@@ -22,7 +22,7 @@ pub(super) struct Cells {
 impl Cells {
     /// The elements of a body.
     pub(super) fn of_body(body: &Body) -> Self {
-        let mut lists = Lists::default();
+        let mut lists = CellArrays::default();
         let topology = body.topology();
         for (element, (nodes, &kind)) in body.elements().iter().zip(body.kinds()).enumerate() {
             let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -53,7 +53,7 @@ impl Cells {
 
     /// Triangles.
     pub(super) fn of_triangles(triangles: &[[u32; 3]]) -> Self {
-        let mut lists = Lists::default();
+        let mut lists = CellArrays::default();
         triangles.iter().for_each(|triangle| lists.push(5, triangle));
         lists.finish()
     }
@@ -61,7 +61,7 @@ impl Cells {
 
 /// The arrays of cells.
 #[derive(Default)]
-struct Lists {
+struct CellArrays {
     connectivity: Vec<u8>,
     offsets: Vec<u8>,
     types: Vec<u8>,
@@ -73,7 +73,7 @@ struct Lists {
     face_offsets: Vec<i64>,
 }
 
-impl Lists {
+impl CellArrays {
     /// Appends a cell of a type of VTK.
     fn push(&mut self, kind: u8, nodes: &[u32]) {
         self.connectivity.extend(nodes.iter().flat_map(|&node| i64::from(node).to_le_bytes()));

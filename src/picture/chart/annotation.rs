@@ -2,7 +2,7 @@
 
 use super::layer::pixels;
 use super::names::{self, DOTS, Name, spread};
-use super::{Chart, Place};
+use super::{Chart, PlotArea};
 use crate::colour::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::Scale;
@@ -64,7 +64,7 @@ pub(in crate::picture) struct Flag {
 }
 
 impl Annotation {
-    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: PlotArea) {
         match self {
             &Self::Moment { at, colour } => {
                 let x = place.x(&chart.x, at);
@@ -86,7 +86,7 @@ impl Annotation {
 }
 
 /// Draws a cross at the end of a line that is cut off at a place.
-fn cross(writer: &mut Writer<'_>, chart: &Chart, place: Place, (line, at): (&[[f64; 2]], f64), colour: Colour) {
+fn cross(writer: &mut Writer<'_>, chart: &Chart, place: PlotArea, (line, at): (&[[f64; 2]], f64), colour: Colour) {
     let (arm, x) = (TICK * place.line, place.x(&chart.x, at));
     let (Some(last), Some(stretch)) = (line.last(), chart.x.stretch(at)) else { return };
     let mut curve = |points: &[[f64; 2]], width, dash: &[f64]| {
@@ -122,11 +122,11 @@ pub(super) fn flags(
     writer: &mut Writer<'_>,
     flags: &[Flag],
     middle: f64,
-    (chart, place): (&Chart, Place),
+    (chart, place): (&Chart, PlotArea),
     bottom: f64,
 ) {
     let (scale, fonts, palette) = (writer.scale, writer.fonts, writer.palette);
-    let Place { left, right, .. } = place;
+    let PlotArea { left, right, .. } = place;
     let unit = scale.type_unit();
     let top = place.top - NEAR * unit;
     let wide = |text: &str| fonts.width(text, Weight::SemiBold, SMALL * unit);

@@ -3,7 +3,7 @@
 use super::ring;
 use super::series::Series;
 use crate::colour::Colour;
-use crate::picture::caption::{RECORDING_ENDS, Room, Writer};
+use crate::picture::caption::{RECORDING_ENDS, WordRoom, Writer};
 use crate::picture::layout::steps::{GAP, NEAR};
 use crate::picture::layout::{Baselines, Rectangle, Scale};
 use crate::picture::number;
@@ -123,7 +123,7 @@ pub(in crate::picture) fn split(series: &[Series], end: f64) -> Option<f64> {
 impl Writer<'_> {
     /// The number of a run's events, from the first one on, whose words fit into a panel.
     pub(in crate::picture) fn explained(&self, panel: Rectangle, events: &[&Event]) -> usize {
-        let room = Room::new(panel, self.scale).width();
+        let room = WordRoom::new(panel, self.scale).width();
         let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 1) <= room;
         (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
     }
@@ -146,7 +146,7 @@ impl Writer<'_> {
         colour: Colour,
         now: f64,
     ) {
-        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, size) = (self.scale.type_unit(), self.scale.caption());
         let events: Vec<_> = events.collect();
         let number_size = self.scale.small();

@@ -1,7 +1,7 @@
 //! The layers of charts: areas, bands, lines and dots.
 
 use super::axis::Stretch;
-use super::{Chart, Place};
+use super::{Chart, PlotArea};
 use crate::colour::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::steps::{BESIDE, FREE, HAIR, MARGIN, STRONG};
@@ -66,7 +66,7 @@ pub enum Layer {
 
 impl Layer {
     /// Draws the layer.
-    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: PlotArea) {
         for stretch in &chart.x.0 {
             let pixels = |points: &Vec<[f64; 2]>| pixels(points, chart, stretch, place);
             match self {
@@ -116,7 +116,7 @@ impl Layer {
     }
 
     /// Whether a part of a line is a band.
-    pub(super) fn has_band(&self, chart: &Chart, place: Place) -> bool {
+    pub(super) fn has_band(&self, chart: &Chart, place: PlotArea) -> bool {
         let Self::Line { points, .. } = self else { return false };
         chart.x.0.iter().any(|stretch| !dense(&pixels(points, chart, stretch, place), place.line).is_empty())
     }
@@ -124,7 +124,7 @@ impl Layer {
 
 /// The part of a line on a stretch of the axis to the right (px), without values that have no place: infinite ones, and zero on a
 /// logarithmic axis.
-pub(super) fn pixels(points: &[[f64; 2]], chart: &Chart, stretch: &Stretch, place: Place) -> Vec<[f64; 2]> {
+pub(super) fn pixels(points: &[[f64; 2]], chart: &Chart, stretch: &Stretch, place: PlotArea) -> Vec<[f64; 2]> {
     let [left, right] = place.ends(stretch);
     let at = |[x, y]: [f64; 2]| [left + stretch.share(x).clamp(0.0, 1.0) * (right - left), place.y(&chart.y, y)];
     cut(points, stretch.range).into_iter().map(at).filter(|place| place.iter().all(|at| at.is_finite())).collect()
@@ -149,7 +149,7 @@ pub(super) fn value(points: &[[f64; 2]], at: f64) -> Option<f64> {
 /// Draws the band that lines cover between two places, in each column with what is up to `reach` beside it (px).
 fn band(
     writer: &mut Writer<'_>,
-    place: Place,
+    place: PlotArea,
     lines: &[Vec<[f64; 2]>],
     [from, to]: [f64; 2],
     reach: f64,
@@ -161,7 +161,7 @@ fn band(
 }
 
 /// The inside of a closed line, as far as it is inside of a chart.
-fn inside(points: &[[f64; 2]], place: Place, paint: (Colour, f64)) -> Option<Item> {
+fn inside(points: &[[f64; 2]], place: PlotArea, paint: (Colour, f64)) -> Option<Item> {
     let points = points.iter().map(|&[x, y]| page::point([x, y.clamp(place.top, place.bottom)].into()));
     let path = Path::polygon(&points.collect::<Vec<_>>());
     (!path.is_empty()).then(|| Item::fill(path, paint))
@@ -281,7 +281,7 @@ mod tests {
         let x = Axis(vec![Stretch::new(Kind::Fixed, [0.0, 4.0], "s", 1.0, 5)]);
         let y = Axis::logarithmic([0.01, 1.0], 4);
         let chart = Chart { x, y, layers: Vec::new(), annotations: Vec::new() };
-        let place = Place { left: 0.0, right: 400.0, top: 0.0, bottom: 100.0, unit: 1.0, line: 1.0 };
+        let place = PlotArea { left: 0.0, right: 400.0, top: 0.0, bottom: 100.0, unit: 1.0, line: 1.0 };
         let points = [[0.0, 0.0], [1.0, 0.01], [2.0, f64::NAN], [3.0, f64::INFINITY], [4.0, 1.0]];
         let found = pixels(&points, &chart, &chart.x.0[0], place);
         assert!(found.len() == 2 && found[0][0] == 100.0 && found[1] == [400.0, 0.0], "{found:?}");

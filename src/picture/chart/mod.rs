@@ -47,7 +47,7 @@ pub struct Chart {
 
 /// The place of a chart (px).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct PlotArea {
     pub left: f64,
     pub right: f64,
     pub top: f64,
@@ -58,7 +58,7 @@ pub(super) struct Place {
     pub line: f64,
 }
 
-impl Place {
+impl PlotArea {
     /// Thickness of hairlines, which depends on the type, in whole pixels.
     fn hairline(self) -> f64 {
         self.unit.round().max(1.0)
@@ -119,12 +119,12 @@ impl Axis {
 impl Chart {
     /// The place of a pair of values in a rectangle: left, top, right and bottom (px).
     pub fn at(&self, [left, top, right, bottom]: [f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
-        let place = Place { left, right, top, bottom, unit: 1.0, line: 1.0 };
+        let place = PlotArea { left, right, top, bottom, unit: 1.0, line: 1.0 };
         [place.x(&self.x, x), place.y(&self.y, y)]
     }
 
     /// Draws the axes with their numbers, optionally with those to the right.
-    pub(super) fn ground(&self, writer: &mut Writer<'_>, place: Place, with_times: bool) {
+    pub(super) fn ground(&self, writer: &mut Writer<'_>, place: PlotArea, with_times: bool) {
         self.rows(writer, place);
         if with_times || self.y.0.is_empty() {
             self.columns(writer, place);
@@ -132,14 +132,14 @@ impl Chart {
     }
 
     /// Draws the layers and what lies above them.
-    pub(super) fn curves(&self, writer: &mut Writer<'_>, place: Place) {
+    pub(super) fn curves(&self, writer: &mut Writer<'_>, place: PlotArea) {
         self.layers.iter().for_each(|layer| layer.draw(writer, self, place));
         self.annotations.iter().for_each(|one| one.draw(writer, self, place));
     }
 
     /// Hairlines at round values, a stronger one at zero, with their numbers. Where two numbers are too close, only the
     /// upper one is written.
-    fn rows(&self, writer: &mut Writer<'_>, place: Place) {
+    fn rows(&self, writer: &mut Writer<'_>, place: PlotArea) {
         let palette = writer.palette;
         let thickness = place.hairline();
         for stretch in &self.y.0 {
@@ -161,7 +161,7 @@ impl Chart {
 
     /// Ticks at round values to the right, on a logarithmic axis lines, with their numbers, the last one of a stretch
     /// with the unit. Numbers end with their stretch.
-    fn columns(&self, writer: &mut Writer<'_>, place: Place) {
+    fn columns(&self, writer: &mut Writer<'_>, place: PlotArea) {
         let (palette, thickness, size) = (writer.palette, place.hairline(), SMALL * place.unit);
         let [hairline, axis] = [palette.hairline, palette.axis].map(|colour| place.thinned(colour, palette.background));
         for (part, stretch) in self.x.0.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Names at the ends of lines, right of a chart.
 
 use super::series::Series;
-use super::{Chart, Place};
+use super::{Chart, PlotArea};
 use crate::colour::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::Scale;
@@ -62,7 +62,7 @@ impl Shortened {
 }
 
 /// Writes names right of a chart, the first ones that fit above each other within an extent above and below it (px).
-pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: Place, names: &[Name], beyond: [f64; 2]) {
+pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: PlotArea, names: &[Name], beyond: [f64; 2]) {
     let (unit, size) = (place.unit, SMALL * place.unit);
     let [top, bottom] = [place.top - beyond[0], place.bottom + beyond[1]];
     let end =

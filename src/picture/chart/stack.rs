@@ -5,7 +5,7 @@ use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
 use super::names::Shortened;
 use super::series::{self, Series};
-use super::{Chart, Place};
+use super::{Chart, PlotArea};
 use crate::picture::caption::Writer;
 use crate::picture::layout::steps::{BESIDE, NEAR, ROW, SHORT, SMALL};
 use crate::picture::layout::{Room, Scale};
@@ -109,7 +109,7 @@ impl Quantity {
     }
 
     /// The chart over an axis of time, at a place.
-    fn chart(&self, x: Axis, writer: &Writer<'_>, place: Place) -> Chart {
+    fn chart(&self, x: Axis, writer: &Writer<'_>, place: PlotArea) -> Chart {
         let rows = ((place.bottom - place.top) / (ROW * place.unit)) as usize + 1;
         let y = Axis(self.values(rows.min(MOST_TICKS)).into_iter().collect());
         let areas = self.series.iter().filter_map(|one| one.area(writer.palette));
@@ -245,13 +245,13 @@ impl Stack {
         room: &Room,
         (span, split): ([f64; 2], Option<f64>),
         marked: &[Flag],
-    ) -> Vec<(Chart, Place)> {
+    ) -> Vec<(Chart, PlotArea)> {
         let scale = ground.scale;
         let (unit, line) = (scale.type_unit(), scale.unit);
         let [left, right] = room.span;
         let x = Axis::of_time(room.span, unit, span, split);
         let placed = self.quantities.iter().zip(&room.charts).map(|(one, &[top, bottom])| {
-            let place = Place { left, right, top, bottom, unit, line };
+            let place = PlotArea { left, right, top, bottom, unit, line };
             (one.chart(x.clone(), ground, place), place)
         });
         let mut placed: Vec<_> = placed.collect();

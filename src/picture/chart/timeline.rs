@@ -4,7 +4,7 @@
 use super::annotation::{Annotation, Flag};
 use super::event::{self, Event};
 use super::stack::Stack;
-use super::{Chart, Place};
+use super::{Chart, PlotArea};
 use crate::picture::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::steps::MARGIN;
@@ -27,7 +27,7 @@ pub(in crate::picture) struct Timeline {
     colours: Vec<(usize, Colour)>,
     events: Vec<Event>,
     /// The charts that have room, at their places.
-    charts: Vec<(Chart, Place)>,
+    charts: Vec<(Chart, PlotArea)>,
     /// The parts that do not move: those below the curves, and the curves.
     still: [Vec<Item>; 2],
 }

@@ -5,7 +5,7 @@ use super::draft::Draft;
 use super::plane_marks::node_radius;
 use crate::look::ColourScale;
 use crate::picture::shell::{Side, boundaries, is_broken};
-use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
+use crate::picture::surface::{Lines, SurfaceContext, SurfaceLines};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use crate::sim::Field;
@@ -31,7 +31,7 @@ impl Draft<'_> {
         if self.position.is_empty() || !self.scene.view.visible.surfaces {
             return [sound, turned_over];
         }
-        let surroundings = Surroundings {
+        let surroundings = SurfaceContext {
             bodies: self.bodies.assembly(),
             ears: &self.bodies.ears,
             position: &self.position,

@@ -3,7 +3,7 @@
 use super::Composer;
 use crate::look::{CameraBoxes, Traced};
 use crate::picture::Framing;
-use crate::picture::framing::{self, Moment, Seen, Shot};
+use crate::picture::framing::{self, Seen, SeenMoment, Shot};
 use crate::picture::layout::steps::{CLOSE, RING};
 use crate::picture::layout::{Rectangle, Scale, clear_of_words};
 use crate::runner::RunFrame;
@@ -81,12 +81,12 @@ pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
     let start = |run: usize| {
         let Run { bodies, initial, .. } = &scene.runs[run];
         let seen = Cow::Owned(CameraBoxes::new(&scene.view, bodies, &initial.position)?);
-        Some(Moment { time: 0.0, run, seen, is_sound: true })
+        Some(SeenMoment { time: 0.0, run, seen, is_sound: true })
     };
     let courses = history.series.iter().flat_map(|course| {
         let (run, is_sound) = (course.run, course.divergence.is_none());
         let boxes = course.times.iter().zip(&course.boxes);
-        boxes.map(move |(&time, seen)| Moment { time, run, seen: Cow::Borrowed(seen), is_sound })
+        boxes.map(move |(&time, seen)| SeenMoment { time, run, seen: Cow::Borrowed(seen), is_sound })
     });
     let moments: Vec<_> = distinct.into_iter().filter_map(start).chain(courses).collect();
     Seen::new(scene, &moments, true)

@@ -24,7 +24,7 @@ use super::chart::event::Event;
 use super::chart::timeline::Timeline;
 use super::framing::{Seen, Shot};
 use super::layout::tree::Solved;
-use super::layout::{Part, Rectangle, Scale, Written, baselines};
+use super::layout::{Part, Rectangle, Scale, WordsShown, baselines};
 use super::number;
 use super::text::Fonts;
 use super::{Framing, Picture};
@@ -42,7 +42,7 @@ pub(crate) use figure::compose_figure;
 use glam::DVec3;
 use numbers::NumberPart;
 use std::sync::OnceLock;
-use words::{Around, Words};
+use words::{PageWords, Words};
 pub(crate) use words::{left_out, type_left_out};
 
 /// Composes frames of one scene.
@@ -82,7 +82,7 @@ pub struct Composer<'a> {
 struct Arranged {
     runs: Vec<usize>,
     columns: usize,
-    around: Around,
+    around: PageWords,
     /// The view of a camera that follows.
     shot: Option<Shot>,
     /// The part of panels' widths for tallies.
@@ -171,7 +171,7 @@ impl<'a> Composer<'a> {
             }
         };
         let Arranged { around, shot, .. } = arranged;
-        let Around { layout, titles, legend, clock_above } = around;
+        let PageWords { layout, titles, legend, clock_above } = around;
         let scale = layout.scale;
         let places = layout.panels.iter().zip(&frame.runs);
         let framings = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale)));
@@ -230,7 +230,7 @@ impl<'a> Composer<'a> {
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let names = words.names(&runs);
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
-            let &Written { labels, events, .. } = &layout.written;
+            let &WordsShown { labels, events, .. } = &layout.written;
             let heading = words.heading(at, &runs, &names, layout);
             let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
             let taken = if has_clock { writer.clock_room(viewport, words.clock_label(layout)) } else { [0.0; 2] };

@@ -24,7 +24,7 @@ pub(super) struct Words<'a> {
 
 /// The text around panels, and the layout.
 #[derive(Debug)]
-pub(super) struct Around {
+pub(super) struct PageWords {
     pub(super) layout: Layout,
     /// The lines of the title and of the caption.
     pub(super) titles: [Vec<String>; 2],
@@ -40,7 +40,7 @@ impl<'a> Words<'a> {
     }
 
     /// The text around the panels of some runs, in columns.
-    pub(super) fn around(&self, runs: &[usize], columns: usize) -> Around {
+    pub(super) fn around(&self, runs: &[usize], columns: usize) -> PageWords {
         let (view, scale, panels) = (self.view(), Layout::around(self.view()), runs.len());
         let (writer, width) = (self.writer(scale), f64::from(view.size[0]));
         // Panels' margins are no wider than the margins around them.
@@ -63,7 +63,7 @@ impl<'a> Words<'a> {
             layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
         }
         let legend = legend.filter(|_| layout.parts.get(Part::Legend).is_some());
-        Around { titles, legend, layout, clock_above }
+        PageWords { titles, legend, layout, clock_above }
     }
 
     /// The words below the clock.
@@ -132,7 +132,7 @@ impl<'a> Words<'a> {
     /// The words without room in pictures of some runs, each with the consequence, and the runs whose names and whose
     /// descriptions are shortened.
     fn left_out(&self, runs: &[usize], columns: usize) -> (Vec<String>, [Vec<&'a str>; 2]) {
-        let (view, Around { layout, .. }) = (self.view(), self.around(runs, columns));
+        let (view, PageWords { layout, .. }) = (self.view(), self.around(runs, columns));
         let Labels { name, model, count, number, .. } = view.labels;
         let is_missed = |part: &Part| match part {
             Part::Name => name,

@@ -251,7 +251,7 @@ pub(super) struct Layout {
     /// A rectangle for each run shown, row by row.
     pub(super) panels: Vec<Rectangle>,
     /// The words of each panel.
-    pub(super) written: Written,
+    pub(super) written: WordsShown,
     /// The places of all parts (px).
     pub(super) parts: Solved<Part>,
 }
@@ -306,7 +306,7 @@ fn unit(view: &View) -> f64 {
 
 /// The text in a panel.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Written {
+pub(super) struct WordsShown {
     pub(super) labels: Labels,
     /// Whether there is a second line, with the model and the start of the clock.
     pub(super) second: bool,
@@ -320,7 +320,7 @@ pub(super) struct Written {
 
 /// The text in a panel of a height (px), with `unit` pixels per pixel of the reference picture. If not all of it fits
 /// beside the body, first the events are left out, then the second line, then the text below.
-pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
+pub(super) fn written(view: &View, height: f64, unit: f64) -> WordsShown {
     let scale = Scale::at(unit).within(view);
     let Labels { letters, name, model, clock, count, number, scale_bar, .. } = view.labels;
     let (second, events) = (model || clock, !view.charts.is_empty());
@@ -347,7 +347,7 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     let [above, room] = solved.get(Part::Body).map_or([0.0, height], |[_, top, _, height]| [top, height]);
     let (names, numbers) = (has(Part::Name), has(Part::Numbers));
     // A row keeps its place where the row above it has nothing to say.
-    Written {
+    WordsShown {
         labels: Labels {
             letters: letters && names,
             name: name && names,

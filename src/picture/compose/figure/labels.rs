@@ -25,7 +25,7 @@ pub(super) type Edges = [f64; 4];
 
 /// The lines and surfaces that labels should not hide, and the labels placed so far.
 #[derive(Clone, Debug)]
-pub(super) struct Labels {
+pub(super) struct LabelPlaces {
     /// The room for labels.
     pub(super) room: Edges,
     /// Pixels for one pixel of the reference picture.
@@ -37,7 +37,7 @@ pub(super) struct Labels {
     boxes: Vec<Edges>,
 }
 
-impl Labels {
+impl LabelPlaces {
     pub(super) fn new(room: Edges, unit: f64) -> Self {
         Self { room, unit, lines: Vec::new(), surfaces: Vec::new(), boxes: Vec::new() }
     }
@@ -112,14 +112,14 @@ mod tests {
 
     #[test]
     fn labels_stand_where_they_are_wanted_if_nothing_is_in_the_way() {
-        let mut labels = Labels::new([0.0, 0.0, 400.0, 400.0], 1.0);
+        let mut labels = LabelPlaces::new([0.0, 0.0, 400.0, 400.0], 1.0);
         let corner = labels.place([DVec2::ZERO.with_y(200.0), DVec2::splat(200.0)], DVec2::new(40.0, 12.0), false);
         assert_eq!(corner, DVec2::new(208.0, 194.0));
     }
 
     #[test]
     fn labels_hide_neither_lines_nor_each_other_and_stay_in_their_room() {
-        let mut labels = Labels::new([0.0, 0.0, 200.0, 200.0], 1.0);
+        let mut labels = LabelPlaces::new([0.0, 0.0, 200.0, 200.0], 1.0);
         let point = DVec2::new(150.0, 100.0);
         labels.lines.push([point, DVec2::new(200.0, 100.0)]);
         let size = DVec2::new(45.0, 14.0);

@@ -26,7 +26,7 @@ pub(super) struct Cell<'a> {
 impl<'a> Cell<'a> {
     pub(super) fn new(
         composer: &'a Composer<'a>,
-        runs: &[moments::Forces],
+        runs: &[moments::RunForces],
         run: usize,
         compare: Option<usize>,
     ) -> Self {

@@ -6,7 +6,7 @@ use crate::look::Palette;
 use crate::picture::arrows::{arrow, bare, outlined};
 use crate::picture::caption::Writer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::compose::figure::labels::Labels;
+use crate::picture::compose::figure::labels::LabelPlaces;
 use crate::picture::compose::plane_body::path_of;
 use crate::picture::ghost::DASH;
 use crate::picture::layout::steps::{APART, CLOSE, FREE, NEAR, SMALL, THIN, TICK};
@@ -31,7 +31,7 @@ const SMALL_NODE: [f64; 2] = [0.3, 0.55];
 const NONE: f64 = 1e-9;
 
 /// A cell with its camera.
-pub(super) struct Drawn<'a> {
+pub(super) struct CellView<'a> {
     pub(super) cell: &'a Cell<'a>,
     pub(super) draft: Draft<'a>,
     pub(super) room: Place,
@@ -39,7 +39,7 @@ pub(super) struct Drawn<'a> {
     pub(super) palette: &'a Palette,
 }
 
-impl Drawn<'_> {
+impl CellView<'_> {
     fn pixel(&self, at: DVec3) -> DVec2 {
         self.draft.lens.project(at).map_or(DVec2::ZERO, |(pixel, _)| DVec2::from(pixel))
     }
@@ -87,7 +87,7 @@ impl Drawn<'_> {
         let (nodes, ghost, seen) = (self.pixels(self.position()), self.pixels(&cell.ghost), self.seen(self.position()));
         let [left, top, right, bottom] = sides(self.room);
         let inset = FREE * unit;
-        let mut labels = Labels::new([left + inset, top + inset, right - inset, bottom - inset], unit);
+        let mut labels = LabelPlaces::new([left + inset, top + inset, right - inset, bottom - inset], unit);
         let faces = self.draft.body.faces().nodes.iter();
         labels.surfaces = faces.map(|face| face.iter().map(|&node| nodes[node as usize]).collect()).collect();
         let seen_ghost = self.seen(&cell.ghost);
@@ -150,7 +150,14 @@ impl Drawn<'_> {
     }
 
     /// The size of a force at its arrow, and the angle to the force that it is compared with.
-    fn number(&self, at: usize, [from, to]: [DVec2; 2], writer: &mut Writer<'_>, labels: &mut Labels, colour: Colour) {
+    fn number(
+        &self,
+        at: usize,
+        [from, to]: [DVec2; 2],
+        writer: &mut Writer<'_>,
+        labels: &mut LabelPlaces,
+        colour: Colour,
+    ) {
         let Self { cell, scale, palette, .. } = self;
         let size = SMALL * scale.type_unit();
         let line = 1.25 * size;
@@ -175,7 +182,7 @@ impl Drawn<'_> {
     }
 
     /// The centre, and the vectors from it to a node and to its place in the equilibrium shape.
-    fn vectors(&self, writer: &mut Writer<'_>, labels: &mut Labels, [nodes, ghost]: [&[DVec2]; 2], seen: &[f64]) {
+    fn vectors(&self, writer: &mut Writer<'_>, labels: &mut LabelPlaces, [nodes, ghost]: [&[DVec2]; 2], seen: &[f64]) {
         let Self { scale, palette, .. } = self;
         let line = scale.line();
         // The visible node with the largest displacement.

@@ -32,7 +32,7 @@ use crate::scene::figure::{Figure, Forces};
 use crate::scene::{Run, Scene};
 use crate::sim::Shape;
 use cell::Cell;
-use drawn::Drawn;
+use drawn::CellView;
 use glam::DVec2;
 
 /// Composes a diagram, and tells what has no room in it.
@@ -56,7 +56,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     for (at, cell) in diagram.cells.iter().enumerate() {
         let Some((room, centre)) = bodies.place(at, diagram.columns) else { break };
         let draft = cell.draft(room, diagram.scale, bodies.pixels, centre);
-        let view = Drawn { cell, draft, room, scale: diagram.scale, palette: &palette };
+        let view = CellView { cell, draft, room, scale: diagram.scale, palette: &palette };
         panels.push(view.panel(&mut under));
         view.draw(forces, &mut writer, &mut above);
     }

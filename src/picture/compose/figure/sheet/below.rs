@@ -41,13 +41,13 @@ fn size_of_tallies(scale: Scale, layout: &SheetLayout) -> (Scale, f64) {
 }
 
 /// The key of struck squares and, if there are any, of hollow ones.
-pub(super) struct Key {
+pub(super) struct TallyKey {
     /// The meaning of struck squares, from the longest to the shortest wording.
     pub(super) wordings: Vec<String>,
     has_flat: bool,
 }
 
-impl Key {
+impl TallyKey {
     /// The key for the runs shown, each given by the places of its scene and of the run in it.
     pub(super) fn new(composers: &[Composer<'_>], shown: &[[usize; 2]], has_flat: bool) -> Self {
         let bodies = || shown.iter().map(|&[scene, run]| composers[scene].bodies(run).body());

@@ -4,7 +4,7 @@ use super::sheet_layout::SheetLayout;
 use crate::look::CameraBoxes;
 use crate::picture::camera::Framing;
 use crate::picture::compose::draft::Draft;
-use crate::picture::framing::{self, Moment, Seen};
+use crate::picture::framing::{self, Seen, SeenMoment};
 use crate::runner::RunFrame;
 use crate::runner::history::NearObstacles;
 use crate::runner::moments::Moments;
@@ -32,7 +32,7 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
         let moment = |run: &RunFrame| {
             let (shown, scene, is_sound) = (run.shown(), scene(column), run.snapshot.status == Status::Ok);
             let seen = CameraBoxes::new(&scene.view, &scene.runs[run.run].bodies, &shown.position)?;
-            Some(Moment { time: shown.time, run: run.run, seen: Cow::Owned(seen), is_sound })
+            Some(SeenMoment { time: shown.time, run: run.run, seen: Cow::Owned(seen), is_sound })
         };
         let of_runs: Vec<_> = moments.cells.iter().filter_map(|row| moment(&row[column])).collect();
         let Some(seen) = Seen::new(scene(column), &of_runs, false) else { continue };

@@ -35,7 +35,7 @@ use crate::runner::moments::Moments;
 use crate::runner::{Frame, RunFrame};
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
-use below::{Below, Key};
+use below::{Below, TallyKey};
 use glam::DVec2;
 use headings::Headings;
 use rows::RowLabels;
@@ -108,7 +108,7 @@ fn cells(moments: &Moments) -> impl Iterator<Item = ([usize; 2], &RunFrame)> {
 struct Plan {
     /// The lines of the title and of the caption.
     titles: [Vec<String>; 2],
-    key: Key,
+    key: TallyKey,
     legend: Option<Legend>,
     charts: Option<Stack>,
     labels: RowLabels,
@@ -155,7 +155,7 @@ impl Plan {
         let headings = Headings::new(sheet, writer, pitch);
         let layout = plan(Wanted { headings: headings.lines(), ..wanted }, pitch);
         let has_flat = cells(moments).any(|(_, run)| run.snapshot.flat.contains(&true));
-        let key = Key::new(composers, &shown, has_flat);
+        let key = TallyKey::new(composers, &shown, has_flat);
         Self { titles, key, legend, charts, labels, headings, layout, width }
     }
 
