@@ -182,7 +182,7 @@ impl Reel for Folder {
 
 impl Folder {
     /// Reads the labels of frames in a folder: of the requested ones up to the last one there, or of all. Frames are
-    /// scaled to a width (px), if it is given. Those of another program follow each other at a rate (1/s).
+    /// scaled to a width (px), if it is given. Frames of another program follow each other at a rate (1/s).
     fn open(
         path: &Path,
         asked: impl FnOnce(u64) -> Option<Result<Vec<u64>, String>>,
@@ -211,7 +211,7 @@ impl Folder {
     }
 }
 
-/// What the file of a frame says of it.
+/// The metadata in the file of a frame.
 struct Label {
     size: [u32; 2],
     frame: u64,

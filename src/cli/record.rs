@@ -312,7 +312,7 @@ impl<'a> Session<'a> {
                 let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&path))?;
                 return Ok(Simulation { frames, ahead: false, notes: false, noted, is_stored: true });
             }
-            // What bodies meet is for messages alone.
+            // Bodies are watched for messages alone.
             if !options.printing.quiet {
                 runner = runner.watching();
             }

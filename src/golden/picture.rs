@@ -59,9 +59,9 @@ pub enum PictureError {
 pub struct Pixels {
     /// Width and height (px).
     pub size: [u32; 2],
-    /// Three bytes for each pixel, row after row from the top left: what transparent pixels show on white.
+    /// Three bytes for each pixel, row after row from the top left, with transparent pixels on white.
     pub bytes: Vec<u8>,
-    /// What they show on black; `None` if all pixels are opaque.
+    /// The same on black; `None` if all pixels are opaque.
     pub on_black: Option<Vec<u8>>,
     /// Its metadata, if it has any.
     pub label: Option<Tags>,

@@ -33,7 +33,7 @@ pub(crate) struct Palette {
     pub shadow_strength: [f32; 2],
     /// Elements in space that are not turned over, before lighting: a colour for each body of a run.
     pub bodies: [Colour; BODIES],
-    /// The same in the plane.
+    /// Such elements in the plane.
     pub bodies_flat: [Colour; BODIES],
     /// A node in the plane.
     pub node: Colour,

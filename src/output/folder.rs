@@ -184,7 +184,7 @@ struct Found {
     has_summary: bool,
 }
 
-/// What the results in a file are, from the least to the greatest reason for refusing a folder.
+/// The kind of the results in a file, from the least to the greatest reason for refusing a folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     /// Of another version of the scene's file.

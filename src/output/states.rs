@@ -59,7 +59,7 @@ pub(crate) struct StatesWriter {
     written: CourseSoFar,
 }
 
-/// What is written about states besides the arrays; it grows with each frame.
+/// The course of the frames written so far, beside the arrays of their states.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct CourseSoFar {
     course: Course,
@@ -72,7 +72,7 @@ pub(crate) struct CourseSoFar {
 /// The bodies of a run.
 #[derive(Debug)]
 struct Mesh {
-    /// What the names of its arrays begin with.
+    /// The beginning of the names of its arrays.
     prefix: String,
     bodies: Arc<Assembly>,
     /// The places of the bodies in the scene.

@@ -19,7 +19,7 @@ use crate::sim::{Body, Divergence, Snapshot, Status};
 const TURNED_OVER: &str = "turned over";
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
-/// The same of a recording, in full and in short.
+/// The text after the end of a recording: long, short.
 pub(in crate::picture) const RECORDING_ENDS: &str = "recording ends";
 const ENDED: &str = "ended";
 /// The widest time of a clock; room for it is reserved, so that nothing moves when the digits change.
@@ -548,10 +548,10 @@ mod tests {
         assert_eq!(short(bends, &both, 32), "ζ = 0.1 of deformation, β = 1/3");
         assert_eq!(short(brakes, &both, 40), "27 cubes, ζ = 0.1, also of rotation");
         assert_eq!(short(brakes, &both, 10), "");
-        // What most share goes before what few do.
+        // Parts of most descriptions go before those of few.
         let springs = "54 springs, k = 10 kN/m, ζ = 0.1";
         assert_eq!(short(bends, &[brakes, springs, bends, brakes], 32), "ζ = 0.1 of deformation, β = 1/3");
-        // What one run alone has is left out from the end, and so is what belongs to one of several bodies.
+        // Parts of one run alone go from the end, as do parts of one of several bodies.
         assert_eq!(short(bends, &[bends], 50), "27 cubes, E = 200 kPa, ν = 0");
         let bodies = "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m, ζ = 0.1";
         assert_eq!(short(bodies, &[bodies, brakes], 45), "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m");

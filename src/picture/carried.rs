@@ -1,4 +1,4 @@
-//! Fine surfaces that coarse bodies carry. What does not depend on the frame, such as creases and the triangles around each
+//! Fine surfaces that coarse bodies carry. Data that do not depend on the frame, such as creases and the triangles around each
 //! point, is found once.
 
 use super::chart::needed;
@@ -56,7 +56,7 @@ pub(super) struct Fine {
     creases: Vec<u32>,
     /// Whether each edge has triangles on both sides.
     is_closed: bool,
-    /// What casts its shadow.
+    /// The caster of its shadow.
     pub(super) shape: SurfaceCaster,
 }
 

@@ -1,5 +1,5 @@
 //! The display list: everything flat in a picture, as paths, images and text in the order in which they are drawn.
-//! Whoever draws a thing makes its items; three writers turn the list into pixels, SVG and PDF.
+//! Each part of a picture makes its items; three writers turn the list into pixels, SVG and PDF.
 
 use super::measures::BEAD_RIM;
 use super::narrow::narrow;

@@ -133,7 +133,7 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     edges
 }
 
-/// What casts the shadow of a carried surface: the surface or, if that is fine, another one with some of its points.
+/// The caster of a carried surface's shadow: the surface or, if that is fine, a coarser one with some of its points.
 #[derive(Debug)]
 pub(super) struct SurfaceCaster {
     /// Its points among those of the surface.

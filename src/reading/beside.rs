@@ -93,7 +93,7 @@ pub(crate) fn missing(path: &Path, endings: &[&str]) -> Wrong {
     (format!("is not there (looked for {})", full.display()), backslash(path).or_else(similar))
 }
 
-/// What to do about a missing path whose folders are separated as on Windows.
+/// The remedy for a missing path whose folders are separated as on Windows.
 pub(crate) fn backslash(path: &Path) -> Option<String> {
     let has_some = !std::path::is_separator('\\') && path.to_string_lossy().contains('\\');
     has_some.then(|| "write / between folders, not \\, which is a part of a name here".to_owned())

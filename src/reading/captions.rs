@@ -61,7 +61,7 @@ pub(crate) fn unusual_choices(model: &dyn ElasticModel, body: &Body) -> String {
     format!("{damping}{}{rotation}", limits(&properties))
 }
 
-/// What a model has besides constants and methods: factors, limits and moduli.
+/// The further parameters of a model: factors, limits and moduli.
 fn limits(properties: &Properties) -> String {
     let word = |&Parameter { name, value }: &Parameter| match (name, value) {
         ("bending", Setting::Number(factor, _)) if factor != 1.0 => format!(", β = {}", fraction(factor)),

@@ -14,7 +14,7 @@ pub struct Mistake {
     /// The key or entry, such as `run[0].model.stiffness`; empty where there is none.
     #[serde(skip)]
     pub place: String,
-    /// What was found and what was expected.
+    /// The found and the expected value.
     pub message: String,
     /// The remedy, unless the message has it.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -29,7 +29,7 @@ struct Corner {
 const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32, 3 => Float32, 4 => Unorm8x4];
 
-/// The constants of one variant of the shader. What a picture does not need is left out: a software driver would do it for
+/// The constants of one variant of the shader. Parts that a picture does not need are left out: a software driver would do them for
 /// every pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Variant {
@@ -131,7 +131,7 @@ impl Surfaces {
         }
     }
 
-    /// Draws a set of all panels. What lies behind must have been drawn, and be bound.
+    /// Draws a set of all panels. The sets behind must have been drawn, and be bound.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture, set: Set) {
         pass.set_vertex_buffer(0, self.corners.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);

@@ -36,7 +36,7 @@ pub struct TimeSeries {
     pub times: Vec<f64>,
     /// The diagnostics at each of these times. Diagnostics that were not requested are zero.
     pub diagnostics: Vec<Diagnostics>,
-    /// The same of each body of the run, one series for each; empty for a run of one body, and if no diagnostics were
+    /// The diagnostics of each body of the run, one series for each; empty for a run of one body, and if no diagnostics were
     /// requested.
     pub of_bodies: Vec<Vec<Diagnostics>>,
     /// The positions (m) of each point of the body that leaves a path ([`crate::look::View::paths`]), at each of these

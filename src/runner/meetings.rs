@@ -29,7 +29,7 @@ impl Watch {
     pub(super) fn new(scene: &Scene, run: usize, world: &World) -> Option<Self> {
         let run = &scene.runs[run];
         let bodies = run.of.len();
-        // What recorded bodies do is not known here.
+        // Nothing is known here of recorded bodies between their moments, and surfaces keep bodies apart.
         if bodies < 2 || run.recording.is_some() || scene.contacts.is_some() {
             return None;
         }

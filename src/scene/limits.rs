@@ -36,7 +36,7 @@ impl Limits {
 }
 
 impl Limits {
-    /// Those of a mesh file.
+    /// The limits of a mesh file.
     pub(super) fn of_mesh(&self) -> mesh::Limits {
         let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
         mesh::Limits { points: most(self.nodes), corners: most(self.corners) }
@@ -62,7 +62,7 @@ pub(super) struct Excess {
     pub(super) message: String,
     /// The remedy.
     pub(super) help: String,
-    /// What to change.
+    /// The part to change.
     pub(super) of: Largest,
 }
 

@@ -139,7 +139,7 @@ pub(crate) fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// What was wrong with a surface and is mended, in words; empty for nothing. Points at one place are no flaw: some formats have no
+/// The mended flaws of a surface in words; empty for nothing. Points at one place are no flaw: some formats have no
 /// others.
 pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
     [
@@ -154,7 +154,7 @@ pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
     .collect()
 }
 
-/// What is wrong with a surface and is left: the predicate of a sentence about it, and a remedy. `closed` says whether it has an inside
+/// The flaws of a surface that are left: the predicate of a sentence about it, and a remedy. `closed` says whether it has an inside
 /// all the same.
 pub(crate) fn left(flaws: &Flaws, closed: bool) -> Option<(String, String)> {
     let left: Vec<String> = [
@@ -177,7 +177,7 @@ pub(crate) fn left(flaws: &Flaws, closed: bool) -> Option<(String, String)> {
     (!left.is_empty()).then(|| (format!("has {}, {what}", list(&left, "and", str::to_owned)), help.to_owned()))
 }
 
-/// What elements show of a surface of this volume that they fill: predicates of sentences about it, with a remedy each. Their side and the
+/// The faults of a surface of this volume that show in the elements that fill it: predicates of sentences about it, with a remedy each. Their side and the
 /// longest one of the surface have one unit; `is_typed` says whether the side was given, and not a number of cells.
 pub(crate) fn doubts(cage: &Cage, volume: f64, side: f64, longest: f64, is_typed: bool) -> Vec<(String, String)> {
     let mut doubts = Vec::new();

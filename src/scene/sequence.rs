@@ -31,7 +31,7 @@ pub(super) struct Sequence {
     pub(super) cells: Cells,
     /// Whether these cells are elements. Surfaces have faces only.
     pub(super) has_elements: bool,
-    /// What is to be known about it: predicates of sentences about the sequence, with remedies.
+    /// Warnings: predicates of sentences about the sequence, with remedies.
     pub(super) notes: Vec<Wrong>,
 }
 

@@ -76,7 +76,7 @@ struct FilesOf<T> {
     place: usize,
     /// The index of the run in the scene.
     run: usize,
-    /// What the names of its files begin with, and the name of their folder.
+    /// The beginning of the names of its files, and the name of their folder.
     stem: String,
     bodies: Vec<OfBody<T>>,
 }
@@ -183,7 +183,7 @@ impl<'a> Export<'a> {
         vtu::document(&mark, *time, cells, position, &of_points, &of_cells)
     }
 
-    /// What is wrong with the files of frames that an earlier command has written, in words; `None` if all are as they were.
+    /// The first fault of the files of frames that an earlier command has written, in words; `None` if all are as they were.
     ///
     /// # Errors
     /// If one cannot be read.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// What is seen of a body: the surface that it carries, or the outer faces of its elements, and elements that are lines.
+/// The visible parts of a body: the surface that it carries, or the outer faces of its elements, and elements that are lines.
 pub(super) struct Surface {
     /// The points of each face, counter-clockwise seen from outside.
     pub(super) faces: IndexLists,

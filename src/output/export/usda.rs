@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-/// What a file begins with: whose it is, and the frames per second of the scene (1/s).
+/// The head of a file: its mark, the name of the run, and the frames per second of the scene (1/s).
 pub(super) struct Head<'h> {
     pub(super) mark: &'h str,
     pub(super) name: &'h str,

@@ -71,7 +71,7 @@ impl Composer<'_> {
     }
 }
 
-/// What a camera that follows sees in the whole course of a scene; `None` if the camera is fixed, or without a place of
+/// The view of a camera that follows, over the whole course of a scene; `None` if the camera is fixed, or without a place of
 /// bodies.
 pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
     if !scene.view.camera.follow {

@@ -104,7 +104,7 @@ impl Part {
         Node::new(self, height).rank(rank)
     }
 
-    /// What is told of a picture in which a box of it has no room.
+    /// The message about a picture in which a box of it has no room.
     fn loss(self) -> Option<&'static str> {
         Some(match self {
             Self::Title => "the title is cut off",

@@ -33,7 +33,7 @@ impl NodeSet {
         Self::new(NodesFile::Region(RegionFile { of: None, within: None, low, high }))
     }
 
-    /// Those of them that belong to the body of a name.
+    /// The nodes among them of the body with a name.
     pub fn of(self, body: impl Into<String>) -> Self {
         Self { body: Some(body.into()), ..self }
     }

@@ -87,7 +87,7 @@ pub(in crate::scene) struct ChosenStates {
     pub(in crate::scene) run: Option<String>,
 }
 
-/// What moves the bodies of a run.
+/// The source of the motion of bodies in a run.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) enum RunSource<'a> {
     /// One model for all of them.
@@ -99,7 +99,7 @@ pub(in crate::scene) enum RunSource<'a> {
 }
 
 impl RunFile {
-    /// What moves its bodies; `None` after a mistake.
+    /// The source of the motion of its bodies; `None` after a mistake.
     pub(in crate::scene) fn source(&self) -> Option<RunSource<'_>> {
         let model = self.model.as_ref().map(RunSource::Model);
         let models = || self.models.as_ref().map(RunSource::Models);

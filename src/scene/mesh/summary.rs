@@ -1,4 +1,4 @@
-//! What a mesh file contains in words and numbers, as `check` prints them.
+//! The contents of a mesh file in words and numbers, as `check` prints them.
 
 use super::{CELLS, MeshFile, crossing, doubts, left, longest, mended, parts};
 use crate::reading::beside::Wrong;
@@ -20,7 +20,7 @@ pub(crate) struct MeshSummary {
     points: usize,
     /// Sides of the box around them.
     extent: [f64; 3],
-    /// What is left out of the file or not read, each as the predicate of a sentence about it.
+    /// The parts of the file that are left out or not read, each as the predicate of a sentence about it.
     notes: Vec<String>,
     #[serde(flatten)]
     content: Content,
@@ -67,7 +67,7 @@ struct GroupSummary {
 struct SurfaceSummary {
     triangles: usize,
     area: f64,
-    /// The volume inside, if the surface is closed. What lies in several shells counts once.
+    /// The volume inside, if the surface is closed. Space in several shells counts once.
     volume: Option<f64>,
     closed: bool,
     #[serde(flatten, with = "FlawNames")]
@@ -75,10 +75,10 @@ struct SurfaceSummary {
     /// The value of `weld` that would close at least half of the open edges.
     weld: Option<f64>,
     groups: Vec<GroupSummary>,
-    /// What is wrong and left, or shows in the elements of the first fill that is possible, with a remedy each.
+    /// The flaws that are left, or show in the elements of the first possible fill, with a remedy each.
     #[serde(rename = "flaws")]
     left: Vec<String>,
-    /// What each fill would give.
+    /// The result of each fill.
     fills: Vec<FillSummary>,
 }
 
@@ -203,7 +203,7 @@ impl MeshSummary {
     }
 }
 
-/// What is wrong with the first polygon whose sides cross.
+/// The fault of the first polygon whose sides cross.
 fn crossed(body: &Body) -> Option<String> {
     body.elements().iter().zip(body.kinds()).enumerate().find_map(|(at, (nodes, &kind))| {
         let corners: Vec<_> = nodes.iter().map(|&node| body.rest()[node as usize]).collect();

@@ -52,7 +52,7 @@ impl Archive {
             }
             track.check(&mut self.npz, &name, axes)?;
         }
-        // What this program has written about a run belongs to these numbers only.
+        // The course that this program wrote describes these numbers only.
         let own = Course::read(&mut self.npz).ok().and_then(|(_, mut course, _)| {
             let run = course.runs.iter().position(|run| run.name == self.run)?;
             let run = course.runs.swap_remove(run);

@@ -40,7 +40,7 @@ impl Origin {
     }
 }
 
-/// What an archive says about its states. After it come the time series of the scene.
+/// The frames of an archive and the ends of its runs. The time series of the scene follow it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Course {
     /// Numbers of the frames, rising.

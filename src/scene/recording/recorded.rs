@@ -65,7 +65,7 @@ impl Recorded {
         &self.source
     }
 
-    /// Where it comes from, and its number of states: `MuJoCo 4.0, recorded, 61 states`.
+    /// Its source, and its number of states: `MuJoCo 4.0, recorded, 61 states`.
     pub(crate) fn description(&self) -> String {
         format!("{}, recorded, {}", self.source(), several(self.moments(), "state"))
     }

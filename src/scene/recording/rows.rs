@@ -7,7 +7,7 @@ use crate::scene::npz::{Array, Npz};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 
-/// What is recorded in each moment.
+/// A quantity that is recorded in each moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::scene) enum Quantity {
     Position,
@@ -26,7 +26,7 @@ pub(in crate::scene) struct Axes {
 }
 
 impl Default for Axes {
-    /// Those of scenes.
+    /// The axes of scenes.
     fn default() -> Self {
         Self { up: Up::Y, scale: 1.0 }
     }

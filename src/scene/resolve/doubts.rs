@@ -165,7 +165,7 @@ fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
         }
     }
     for run in 0..scene.runs.len() {
-        // Whoever gives a scale means it.
+        // A scale that was given is meant.
         if !report.is_typed(&key_path!["run", run, "scale"])
             && let Some([message, help]) = scene.misfits(run)
         {

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 #[derive(Debug)]
 pub(super) struct SceneGrip {
     path: KeyPath,
-    /// What holds the nodes, such as "held by `hold[0]`".
+    /// The holder of the nodes, such as "held by `hold[0]`".
     holder: String,
     /// The nodes of each body of the scene, in rising order.
     nodes: Vec<Vec<u32>>,

@@ -23,7 +23,7 @@ pub(super) struct ReadRecording {
     source: ListSource,
 }
 
-/// What a recording tells about its body.
+/// The body that comes with a recording.
 #[derive(Debug)]
 enum Own {
     Nothing,
@@ -37,7 +37,7 @@ enum Own {
     },
 }
 
-/// What a recording shows.
+/// The bodies that a recording shows.
 pub(super) enum Shown {
     /// The bodies of its run.
     Bodies(State),

@@ -147,7 +147,7 @@ impl<'a> Diagram<'a> {
         tree::column(&layout::page(self.scale, wanted, rows.into_iter()), [0.0, 0.0, width, height])
     }
 
-    /// The bodies on a page. Those of one scale are aligned in columns and rows, which share the height by their needs.
+    /// The bodies on a page. Columns and rows align them, and rows share the height by their needs.
     fn bodies(&self, page: &Solved<Part>) -> Result<Bodies, NoRoom> {
         let (unit, type_unit) = (self.scale.unit, self.scale.type_unit());
         let extents: Vec<_> = self.cells.iter().map(Cell::extent).collect();
