@@ -117,7 +117,7 @@ impl Render {
         }
         let from_states = self.from_states.is_some();
         let (keeps, at) = (!self.no_frames, self.at.as_ref());
-        let wish = Wish { pictures: true, keeps, shard: self.shard, from_states, at };
+        let wish = Wish { keeps: Some(keeps), shard: self.shard, from_states, at };
         let mut jobs = self.options.jobs(scenes, wish, words)?;
         jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {

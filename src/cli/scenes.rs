@@ -3,7 +3,7 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Instants, Shard};
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Access, Folder, Manifest, OutputError, Whose, recorded};
+use crate::output::{Access, Folder, FramePictures, Manifest, OutputError, Whose, recorded};
 use crate::output::{export, shell};
 use crate::runner::Stored;
 use crate::scene::{Limits, Scene, SceneError};
@@ -81,9 +81,8 @@ pub(super) struct Job {
 /// The differences between the commands that run scenes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wish<'a> {
-    /// Whether frames are drawn, and whether they are kept.
-    pub(super) pictures: bool,
-    pub(super) keeps: bool,
+    /// Whether drawn frames are kept; `None` if none are drawn.
+    pub(super) keeps: Option<bool>,
     /// The shard of the frames, unless all are made.
     pub(super) shard: Option<Shard>,
     /// Whether states are read, so that no checkpoint is needed.
@@ -115,7 +114,7 @@ impl RunOptions {
 
     /// The job for one scene in a folder.
     fn job(&self, scene: Scene, path: &Path, wish: Wish<'_>, words: &[OsString]) -> Result<Job, Failure> {
-        let Wish { pictures, keeps, shard, from_states, at } = wish;
+        let Wish { keeps, shard, from_states, at } = wish;
         let runs = self.runs(&scene)?;
         let mut frames = self.frames(&scene, at)?;
         let all = frames.clone();
@@ -123,11 +122,11 @@ impl RunOptions {
             frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
         }
         let names = runs.iter().flat_map(|&run| recorded(&scene.runs[run].name, &scene, run)).map(|(name, _)| name);
-        let size = pictures.then_some(scene.view.size);
+        let pictures = keeps.map(|are_kept| FramePictures { size: scene.view.size, are_kept });
         let files = export::files(&scene, &runs, &self.formats(), all.len());
         let files = files.map_err(|message| Failure::usage(format!("--write: in “{}” {message}", scene.title)))?;
         let (runs_of, states) = (names.collect(), self.states);
-        let manifest = Manifest { runs: runs_of, frames: frames.clone(), states, files, size, keeps };
+        let manifest = Manifest { runs: runs_of, frames: frames.clone(), states, files, pictures };
         let resume = self.resume && !from_states && shard.is_none();
         let access = Access { overwrite: self.overwrite, follows: self.out.is_none(), resume, shard: shard.is_some() };
         let folder = Folder::inspect(path, Whose::of(&scene), manifest, access).map_err(|error| match error {

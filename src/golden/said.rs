@@ -1,6 +1,7 @@
 //! The keys and values of a scene file, so that a golden can name those changed.
 
 use super::keys::Key;
+use crate::reading::words::hexadecimal;
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
 use sha2::{Digest, Sha256};
@@ -79,8 +80,7 @@ fn written(value: &Value) -> String {
 
 /// The start of a digest.
 fn digest(bytes: &[u8]) -> String {
-    let digest: String = Sha256::digest(bytes).iter().take(6).map(|byte| format!("{byte:02x}")).collect();
-    format!("digest {digest}")
+    format!("digest {}", hexadecimal(&Sha256::digest(bytes)[..6]))
 }
 
 #[cfg(test)]

@@ -227,7 +227,7 @@ fn summary(bytes: &[u8]) -> bool {
     in_folder("run.json", bytes, |path| {
         let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
         let (runs, files) = (vec!["shape".to_owned()], Vec::new());
-        let manifest = Manifest { runs, frames: vec![0], states: false, files, size: None, keeps: true };
+        let manifest = Manifest { runs, frames: vec![0], states: false, files, pictures: None };
         let folder = path.parent().expect("a folder");
         Folder::inspect(folder, Whose::of(&scene), manifest, Access::default()).is_ok()
     })

@@ -2,6 +2,7 @@
 
 use crate::reading::beside::bytes;
 use crate::reading::collector::{Collector, PathPart};
+use crate::reading::words::hexadecimal;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -147,5 +148,5 @@ pub(crate) fn missing(_: &FontFiles, _: &str) -> Option<char> {
 
 /// The digest of a file, which replaces its name in the digest of a scene.
 pub(crate) fn digest(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&Sha256::digest(bytes))
 }

@@ -33,16 +33,23 @@ pub(crate) struct Manifest {
     pub states: bool,
     /// Patterns of the files for other programs, below the folder.
     pub files: Vec<String>,
-    /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
-    pub size: Option<[u32; 2]>,
-    /// Whether drawn frames are kept after the command.
-    pub keeps: bool,
+    /// The pictures, if frames are drawn.
+    pub pictures: Option<FramePictures>,
+}
+
+/// The pictures of frames. All in a folder have the same size and runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct FramePictures {
+    /// Width and height (px).
+    pub size: [u32; 2],
+    /// Whether they are kept after the command.
+    pub are_kept: bool,
 }
 
 impl Manifest {
     /// Width and height of the frames in the folder (px), if frames are drawn and kept.
     pub(crate) fn kept_size(&self) -> Option<[u32; 2]> {
-        self.size.filter(|_| self.keeps)
+        self.pictures.filter(|drawn| drawn.are_kept).map(|drawn| drawn.size)
     }
 }
 
@@ -157,14 +164,8 @@ mod tests {
     }
 
     fn manifest() -> Manifest {
-        Manifest {
-            runs: vec!["one".to_owned()],
-            frames: vec![0, 1, 2],
-            states: false,
-            files: Vec::new(),
-            size: None,
-            keeps: true,
-        }
+        let (runs, frames) = (vec!["one".to_owned()], vec![0, 1, 2]);
+        Manifest { runs, frames, states: false, files: Vec::new(), pictures: None }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Digests by which states are compared bit for bit.
 
+use crate::reading::words::hexadecimal;
 use crate::scene::Scene;
 use crate::sim::Snapshot;
 use sha2::{Digest, Sha256};
@@ -20,7 +21,7 @@ pub(crate) fn state_digest(snapshot: &Snapshot, nodes: Range<usize>) -> String {
     for vector in snapshot.position[nodes.clone()].iter().chain(&snapshot.velocity[nodes]) {
         hash.update(super::states::vector_bytes(vector));
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&hash.finalize())
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ impl Folder {
     pub(crate) fn inspect(path: &Path, scene: Whose, manifest: Manifest, access: Access) -> Result<Self, OutputError> {
         let mut folder = Self { path: path.to_owned(), scene, manifest, access, replaced: None };
         if is_folder(path)? {
-            FolderLock::check(path)?;
+            drop(FolderLock::shared(path)?);
             if access.resume {
                 Checkpoint::read(path, &folder.scene, &folder.manifest)?;
             }
@@ -130,9 +130,9 @@ impl Folder {
 
     /// Removes leftovers of killed processes that wrote the same files.
     fn remove_leftovers(&self) -> Result<(), OutputError> {
-        let Manifest { frames, files, size, .. } = &self.manifest;
+        let Manifest { frames, files, pictures, .. } = &self.manifest;
         let alone = !self.access.shard;
-        remove_leftovers(&self.path, if size.is_some() { frames } else { &[] }, alone)?;
+        remove_leftovers(&self.path, if pictures.is_some() { frames } else { &[] }, alone)?;
         let folders = files.iter().filter_map(|pattern| Some(self.path.join(pattern.split_once("/*")?.0)));
         folders.filter(|path| path.is_dir()).try_for_each(|path| remove_leftovers(&path, &[], alone))
     }
@@ -367,14 +367,8 @@ mod tests {
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
-        let manifest = Manifest {
-            runs: Vec::new(),
-            frames: Vec::new(),
-            states: false,
-            files: Vec::new(),
-            size: None,
-            keeps: true,
-        };
+        let (runs, frames, files) = Default::default();
+        let manifest = Manifest { runs, frames, states: false, files, pictures: None };
         let inspect = |scene, access| Folder::inspect(place.path(), Whose::of(scene), manifest.clone(), access);
         let summary = Summary::new(&one, &[0], 0, &[]);
         inspect(&one, Access::default()).unwrap().prepare(&summary).unwrap();

@@ -26,17 +26,20 @@ impl FolderLock {
     /// # Errors
     /// If another process writes to it.
     pub(super) fn alone(path: &Path) -> Result<Self, OutputError> {
-        let lock = Self::open(path);
-        if lock.take(true) { Ok(lock) } else { Err(OutputError::InUse { path: path.to_owned() }) }
+        Self::held(path, true)
     }
 
-    /// Locks an existing folder for adding files together with other processes.
+    /// Locks a folder, which need not exist, for adding files together with other processes.
     ///
     /// # Errors
     /// If a process has locked it for exclusive use.
     pub(super) fn shared(path: &Path) -> Result<Self, OutputError> {
+        Self::held(path, false)
+    }
+
+    fn held(path: &Path, alone: bool) -> Result<Self, OutputError> {
         let lock = Self::open(path);
-        if lock.take(false) { Ok(lock) } else { Err(OutputError::InUse { path: path.to_owned() }) }
+        if lock.take(alone) { Ok(lock) } else { Err(OutputError::InUse { path: path.to_owned() }) }
     }
 
     /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they
@@ -46,11 +49,6 @@ impl FolderLock {
         // A process that keeps an exclusive lock for longer has removed its leftovers: there is no need to wait for it.
         let _ = lock.take(false);
         lock
-    }
-
-    /// Tests whether a process has locked a folder, which need not exist, for exclusive use.
-    pub(crate) fn check(path: &Path) -> Result<(), OutputError> {
-        if Self::open(path).take(false) { Ok(()) } else { Err(OutputError::InUse { path: path.to_owned() }) }
     }
 
     fn open(path: &Path) -> Self {
@@ -83,14 +81,14 @@ mod tests {
         let path = folder.path();
         let alone = FolderLock::alone(path).unwrap();
         assert!(matches!(FolderLock::alone(path), Err(OutputError::InUse { .. })));
-        assert!(FolderLock::check(path).is_err());
+        assert!(FolderLock::shared(path).is_err());
         drop(alone);
         let several = [FolderLock::beside_others(path), FolderLock::beside_others(path)];
         assert!(FolderLock::alone(path).is_err());
-        FolderLock::check(path).unwrap();
+        drop(FolderLock::shared(path).unwrap());
         drop(several);
         FolderLock::alone(path).unwrap();
-        FolderLock::check(&path.join("absent")).unwrap();
+        drop(FolderLock::shared(&path.join("absent")).unwrap());
     }
 
     #[test]

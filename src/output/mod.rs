@@ -27,7 +27,7 @@ mod timing;
 mod whose;
 
 pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
-pub(crate) use checkpoint::{Checkpoint, Manifest, waiting_states};
+pub(crate) use checkpoint::{Checkpoint, FramePictures, Manifest, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::{recorded, state_digest};
 pub(crate) use error::{OutputError, is_folder, read_file};

@@ -74,7 +74,7 @@ pub(crate) enum Outcome {
 }
 
 /// Numbers of frames.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct FrameSummary {
     /// The number of requested frames.
     pub asked: usize,
@@ -93,7 +93,7 @@ pub(crate) struct FrameSummary {
 }
 
 /// The result of a run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct RunEntry {
     pub name: String,
     /// The names of its bodies; absent if its only body has no name.
@@ -123,10 +123,11 @@ pub(crate) struct RunEntry {
 }
 
 /// The outcome of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
 pub(crate) enum RunStatus {
     /// It has not diverged.
+    #[default]
     Ok,
     /// Its recording has ended.
     Ended {
@@ -205,13 +206,7 @@ impl Summary {
                 name: run.name.clone(),
                 bodies: run.body_names(scene).map(str::to_owned).collect(),
                 time_step: run.step,
-                steps: 0,
-                status: RunStatus::Ok,
-                cause: None,
-                unsolved: None,
-                cut: Vec::new(),
-                last: None,
-                extremes: Extremes::default(),
+                ..RunEntry::default()
             }
         };
         Self {
@@ -226,7 +221,7 @@ impl Summary {
             command: command.to_vec(),
             set: Vec::new(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, repeated: 0, size: None },
+            frames: FrameSummary { asked, ..FrameSummary::default() },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),

@@ -19,6 +19,11 @@ pub(crate) fn shortened(text: &str) -> String {
     text.chars().take(24).map(clean).chain(" … ".chars()).chain(text.chars().skip(count - 12).map(clean)).collect()
 }
 
+/// Bytes as hexadecimal digits.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// `a, b or c`.
 pub(crate) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str) -> String) -> String {
     match names {

@@ -3,6 +3,7 @@
 use super::file::{BodyFile, ContactRule, Coordinates, Positive, SceneFile};
 use super::schema::{SCHEMA, by_name, variants, without_nulls};
 use crate::look::print::SizeFile;
+use crate::reading::words::hexadecimal;
 use crate::sim::FrictionOf;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -74,7 +75,7 @@ pub(super) fn digest(typed: &SceneFile, files: FileDigests) -> String {
     scene.insert("body", if written.len() == 1 { written.remove(0) } else { Canonical::List(written) });
     let mut hash = Hash(Sha256::new());
     serde_json::to_writer(BufWriter::new(&mut hash), &scene).expect("hashing cannot fail");
-    hash.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&hash.0.finalize())
 }
 
 /// An entry of the canonical scene.

@@ -6,7 +6,7 @@ pub(crate) use summary::MeshSummary;
 
 use super::limits::Limits;
 use crate::reading::beside::{self, Wrong, ending};
-use crate::reading::words::{count, list, nearest, several, short};
+use crate::reading::words::{count, hexadecimal, list, nearest, several, short};
 use crate::sets::Sets;
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
@@ -66,7 +66,7 @@ impl MeshFile {
         let mut cells = mesh::read_cells_with(&bytes, format, &limits, &mut beside).map_err(told)?;
         let joined = weld.map_or(0, |distance| cells.weld(distance));
         let mesh = cells.mesh(format).map_err(told)?;
-        let digest = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let digest = hexadecimal(&hash.finalize());
         Ok(Self { mesh, joined, digest })
     }
 }

@@ -4,7 +4,7 @@ use super::course::{Course, StoredRun};
 use super::flaw::{Flaw, check_length};
 use super::recorded::Recorded;
 use super::rows::{Axes, Quantity, Rows, Track};
-use crate::reading::words::{list, nearest, quoted};
+use crate::reading::words::{hexadecimal, list, nearest, quoted};
 use crate::scene::file::LARGEST;
 use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz};
@@ -154,7 +154,7 @@ impl Archive {
                 Some((state, *times_wider))
             }),
             axes,
-            digest: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
+            digest: hexadecimal(&hash.finalize()),
             rows: Mutex::new(Rows { npz: self.npz, tracks }),
             places: None,
             fault: Mutex::default(),

@@ -2,6 +2,7 @@
 
 use super::{KeyPath, vector};
 use crate::reading::collector::{Collector, Help, PathPart, key_path, written};
+use crate::reading::words::hexadecimal;
 use crate::scene::file::{BodyFile, Coordinates, LARGEST, Positive};
 use crate::sim::{Dimension, IndexLists, Solids};
 use glam::DVec3;
@@ -202,7 +203,7 @@ impl Lists {
             lengths(&mut hasher, "masses", masses.len());
             masses.iter().for_each(|mass| hasher.update(mass.to_le_bytes()));
         }
-        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hexadecimal(&hasher.finalize())
     }
 }
 

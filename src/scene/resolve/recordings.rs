@@ -4,7 +4,7 @@ use super::lists::{ListSource, Lists};
 use super::{KeyPath, Typed, body, mesh};
 use crate::reading::beside::missing;
 use crate::reading::collector::{Collector, key_path, written};
-use crate::reading::words::{count, list, nearest};
+use crate::reading::words::{count, hexadecimal, list, nearest};
 use crate::scene::file::{Positive, RunFile, StatesFile, Up};
 use crate::scene::recording::{Archive, Axes, Flaw, Recorded};
 use crate::scene::sequence::{self, Sequence};
@@ -259,5 +259,5 @@ fn digest_of(cells: &Cells) -> String {
         hash.update((corners.len() as u64).to_le_bytes());
         corners.iter().for_each(|corner| hash.update(corner.to_le_bytes()));
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&hash.finalize())
 }
