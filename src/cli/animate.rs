@@ -211,6 +211,9 @@ impl Folder {
     }
 }
 
+/// Files with their numbers.
+type Numbered = Vec<(u64, PathBuf)>;
+
 /// The metadata in the file of a frame.
 struct Label {
     size: [u32; 2],
@@ -269,7 +272,7 @@ fn chosen(
     path: &Path,
     asked: impl FnOnce(u64) -> Option<Result<Vec<u64>, String>>,
     rate: Option<f64>,
-) -> Result<(Vec<(u64, PathBuf)>, Option<f64>), Failure> {
+) -> Result<(Numbered, Option<f64>), Failure> {
     let name = path.display();
     match path.metadata() {
         Ok(found) if found.is_dir() => {}
@@ -302,7 +305,7 @@ fn chosen(
 }
 
 /// The numbered PNG files of another program in a folder, and their rate (1/s), which is to be given.
-fn others(path: &Path, rate: Option<f64>) -> Result<(Vec<(u64, PathBuf)>, f64), Failure> {
+fn others(path: &Path, rate: Option<f64>) -> Result<(Numbered, f64), Failure> {
     let name = path.display();
     let found = beside::numbered(path, "", ".png")
         .map_err(|(message, _)| Failure::usage(format!("{name} {message}; move the others to another folder")))?;
