@@ -66,7 +66,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     Ok(Written { pictures: ticks.len(), duration, size })
 }
 
-/// The compressed part of a picture that differs from what is shown.
+/// The compressed part of a picture that differs from the shown one.
 fn frame(size: [u32; 2], numbers: Vec<u8>, shown: &mut Option<Vec<u8>>) -> Frame<'static> {
     let (place, buffer) = match shown.take() {
         None => ([0, 0, size[0], size[1]], numbers.clone()),

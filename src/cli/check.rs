@@ -6,9 +6,10 @@ use super::failure::{Failure, Status, complain, note, warn, with_causes};
 use super::options::size;
 use super::options::{PrintOptions, SceneOptions};
 use super::scenes::{status_of, worse};
-use crate::reading::Mistake;
 #[cfg(feature = "render")]
-use crate::runner::Runner;
+use super::still::doubts;
+#[cfg(not(feature = "render"))]
+use crate::reading::Mistake;
 use crate::scene::Scene;
 use crate::scene::mesh::{MeshSummary, is_mesh};
 use clap::Args;
@@ -56,8 +57,8 @@ impl Check {
             match self.scenes.load(path).map(|scene| self.resized(scene)) {
                 Ok(_) if self.printing.quiet && !self.printing.json => {}
                 Ok(mut scene) => {
-                    scene.warnings.extend(of_pictures(&scene));
-                    let no_room = no_room(&scene);
+                    let (warnings, no_room) = doubts(&scene);
+                    scene.warnings.extend(warnings);
                     if self.printing.json {
                         let (scene, warnings) = (scene.summary(), &scene.warnings);
                         documents.push(
@@ -93,7 +94,7 @@ impl Check {
         Ok(failed.unwrap_or(Status::Done))
     }
 
-    /// Checks a mesh file, and prints what it contains unless a document does.
+    /// Checks a mesh file, and prints its contents unless a document does.
     fn mesh(&self, path: &Path, blank: &str) -> Result<Value, Failure> {
         let file = path.to_string_lossy();
         let (is_text, limits) = (!self.printing.json, self.scenes.limits());
@@ -130,45 +131,8 @@ impl Check {
     }
 }
 
-/// Warnings of pictures: a body that leaves its panel at the start, before a camera that stands still, and type that is too
-/// small to be printed.
-#[cfg(feature = "render")]
-fn of_pictures(scene: &Scene) -> Vec<Mistake> {
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let is_cut = || {
-        let mut runner = Runner::new(scene, &runs).with_diagnostics(&scene.frame_diagnostics());
-        let picture = crate::picture::Composer::new(scene, &Default::default()).compose(&runner.frame(0));
-        picture.panels.iter().any(|panel| panel.is_cut)
-    };
-    let cut = (!scene.view.camera.follow && is_cut()).then(|| {
-        let help = "move the camera back, or let it follow: leave out `target` and `distance`";
-        ("view.camera", ["the body leaves its panel at the start", help].map(str::to_owned))
-    });
-    let small = super::still::too_small(scene, &runs).map(|words| ("view.size", words));
-    let warning = |(place, [message, help]): (&str, [String; 2])| Mistake {
-        line: 0,
-        column: 0,
-        place: place.to_owned(),
-        message,
-        help: Some(help),
-        excerpt: String::new(),
-        marked: 0..0,
-    };
-    cut.into_iter().chain(small).map(warning).collect()
-}
-
+/// Builds that cannot draw have no doubts about pictures.
 #[cfg(not(feature = "render"))]
-fn of_pictures(_: &Scene) -> Vec<Mistake> {
-    Vec::new()
-}
-
-/// The parts that have no room in the pictures of a scene.
-fn no_room(scene: &Scene) -> Vec<String> {
-    #[cfg(feature = "render")]
-    return crate::picture::left_out(scene);
-    #[cfg(not(feature = "render"))]
-    {
-        let _ = scene;
-        Vec::new()
-    }
+fn doubts(_: &Scene) -> (Vec<Mistake>, Vec<String>) {
+    Default::default()
 }

@@ -4,10 +4,7 @@ use super::console;
 use super::failure::{Failure, Status, with_causes};
 use super::options::PrintOptions;
 #[cfg(feature = "render")]
-use super::{
-    failure::{warn, warn_of_figure},
-    interrupt,
-};
+use super::{failure::warn, figure::warn_of_figure, interrupt};
 #[cfg(feature = "render")]
 use crate::golden::{
     AcceptError, Golden,

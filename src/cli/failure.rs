@@ -1,12 +1,6 @@
 //! Exit statuses and error messages.
 
-#[cfg(feature = "render")]
-use crate::gpu::InitError;
 use crate::output::OutputError;
-#[cfg(feature = "render")]
-use crate::render::RenderError;
-#[cfg(feature = "render")]
-use crate::scene::figure::Figure;
 use crate::scene::{Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -89,22 +83,6 @@ impl From<OutputError> for Failure {
     }
 }
 
-/// There is no usable graphics adapter.
-#[cfg(feature = "render")]
-impl From<InitError> for Failure {
-    fn from(error: InitError) -> Self {
-        Self::new(Status::Adapter, &error)
-    }
-}
-
-/// The device stopped working or refused.
-#[cfg(feature = "render")]
-impl From<RenderError> for Failure {
-    fn from(error: RenderError) -> Self {
-        Self::new(Status::Adapter, &error)
-    }
-}
-
 /// An error and its causes on one line.
 pub(super) fn with_causes(error: &dyn Error) -> String {
     let mut text = error.to_string();
@@ -122,14 +100,6 @@ pub(super) fn warn(file: &Path, scene: &Scene) {
     if !found.is_empty() {
         let total = found.len();
         let _ = writeln!(io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
-    }
-}
-
-/// Prints the warnings of the scenes of a figure.
-#[cfg(feature = "render")]
-pub(super) fn warn_of_figure(figure: &Figure) {
-    for scene in figure.scenes() {
-        warn(scene.file.as_deref().unwrap_or(Path::new(&scene.name)), scene);
     }
 }
 

@@ -1,7 +1,7 @@
 //! `figure`: the paper's figures, and figures of the user.
 
 use super::console;
-use super::failure::{Failure, Status, note, warn_of_figure};
+use super::failure::{Failure, Status, note, warn};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
@@ -368,6 +368,13 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
             let all = rows.map(|row| (0..sheet.columns.len()).map(|column| cell(row, column)).collect::<Vec<_>>());
             json!(all.collect::<Vec<_>>())
         }
+    }
+}
+
+/// Prints the warnings of the scenes of a figure.
+pub(super) fn warn_of_figure(figure: &Figure) {
+    for scene in figure.scenes() {
+        warn(scene.file.as_deref().unwrap_or(Path::new(&scene.name)), scene);
     }
 }
 

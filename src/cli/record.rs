@@ -405,7 +405,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Takes what the simulation returns. Returns whether more is to come.
+    /// Takes one result of the simulation. Returns whether more are to come.
     fn take(
         &mut self,
         next: Next,

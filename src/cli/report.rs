@@ -44,7 +44,7 @@ fn made(summary: &Summary, folder: &Path) -> String {
     }
 }
 
-/// The state of each run at the end, with what is broken if some run breaks.
+/// The state of each run at the end, with the broken parts if some run breaks.
 fn table(runs: &[RunEntry]) -> String {
     let heads = ["run", "status", "turned over", "broken", "shape error"].map(str::to_owned);
     let rows: Vec<_> = std::iter::once(heads).chain(runs.iter().flat_map(rows)).collect();

@@ -18,7 +18,7 @@ pub(super) trait Pictures {
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
     /// Waits until all frames so far are written.
     fn flush(&mut self) -> Result<(), Failure>;
-    /// Keeps frames of an earlier command. If one of them has changed, returns what is wrong with it, in words.
+    /// Keeps frames of an earlier command. If one of them has changed, returns its fault in words.
     fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure>;
     /// Waits until all frames are written, and records their number and the time taken.
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;

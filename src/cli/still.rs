@@ -1,12 +1,13 @@
 //! Files of one picture: PNG, or SVG and PDF for print.
 
-use super::failure::Failure;
+use super::failure::{Failure, Status};
 use super::options::RunOptions;
 use super::{film, interrupt, record};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, InitError};
 use crate::look::Print;
 use crate::output::{Compression, OutputError, encode_print, read_tags};
-use crate::picture::{Composer, Picture, type_left_out};
+use crate::picture::{Composer, Picture, left_out, type_left_out};
+use crate::reading::Mistake;
 use crate::reading::words::short;
 use crate::render::{RenderError, Renderer};
 use crate::runner::Frame;
@@ -48,6 +49,20 @@ impl StillFormat {
              `localshape animate`)",
             path.display()
         )
+    }
+}
+
+/// There is no usable graphics adapter.
+impl From<InitError> for Failure {
+    fn from(error: InitError) -> Self {
+        Self::new(Status::Adapter, &error)
+    }
+}
+
+/// The device stopped working or refused.
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        Self::new(Status::Adapter, &error)
     }
 }
 
@@ -129,12 +144,38 @@ fn smallest_type(picture: &Picture) -> f32 {
 }
 
 /// Why some runs of a scene cannot be printed, judged by the first frame before anything is simulated, and the remedy.
-pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<[String; 2]> {
+fn too_small(scene: &Scene, runs: &[usize]) -> Option<[String; 2]> {
     let print = scene.view.print.as_ref()?;
+    let smallest = smallest_type(&first_picture(scene, runs));
+    print.too_small(type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest.into()))
+}
+
+/// The picture of the start of some runs, before anything is simulated.
+fn first_picture(scene: &Scene, runs: &[usize]) -> Picture {
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
-    let first = Composer::new(scene, &History::default()).compose(&runner.frame(0));
-    let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first).into());
-    print.too_small(smallest)
+    Composer::new(scene, &History::default()).compose(&runner.frame(0))
+}
+
+/// Warnings of pictures, and the parts that have no room in them. Warned is of a body that leaves its panel at the start, before a
+/// camera that stands still, and of type that is too small to be printed.
+pub(super) fn doubts(scene: &Scene) -> (Vec<Mistake>, Vec<String>) {
+    let runs: Vec<_> = (0..scene.runs.len()).collect();
+    let is_cut = || first_picture(scene, &runs).panels.iter().any(|panel| panel.is_cut);
+    let cut = (!scene.view.camera.follow && is_cut()).then(|| {
+        let help = "move the camera back, or let it follow: leave out `target` and `distance`";
+        ("view.camera", ["the body leaves its panel at the start", help].map(str::to_owned))
+    });
+    let small = too_small(scene, &runs).map(|words| ("view.size", words));
+    let warning = |(place, [message, help]): (&str, [String; 2])| Mistake {
+        line: 0,
+        column: 0,
+        place: place.to_owned(),
+        message,
+        help: Some(help),
+        excerpt: String::new(),
+        marked: 0..0,
+    };
+    (cut.into_iter().chain(small).map(warning).collect(), left_out(scene))
 }
 
 /// The file of a scene, for messages.

@@ -121,7 +121,7 @@ impl Pixels {
 /// The numbers of a pixel, and their bits.
 type Kind = (png::ColorType, png::BitDepth);
 
-/// Writes what a row of pixels with opacities shows on white and on black, rounded to 8 bits. Opacities act on the numbers as they are,
+/// Writes the colours of a row of pixels with opacities on white and on black, rounded to 8 bits. Opacities act on the numbers as they are,
 /// as in browsers.
 fn show(line: &[u8], (colour, depth): Kind, white: &mut [u8], black: &mut [u8]) {
     let (samples, most): (Vec<u64>, u64) = match depth {

@@ -103,7 +103,7 @@ impl ReadBack {
         Pending { mapped, submission: gpu.queue().submit([commands.finish()]) }
     }
 
-    /// Waits for the copies, and returns what is read from them.
+    /// Waits for the copies, and returns the result of reading them.
     ///
     /// # Errors
     /// The device was lost or refused a command.

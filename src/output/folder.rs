@@ -197,7 +197,7 @@ enum Kind {
     Other,
 }
 
-/// The scene of a command, what it will write, and the scene of the summary in the folder.
+/// The scene of a command, its files, and the scene of the summary in the folder.
 struct Claim<'c> {
     scene: &'c Whose,
     manifest: &'c Manifest,

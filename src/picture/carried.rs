@@ -29,7 +29,7 @@ const LEAST_FACING: f32 = 0.01;
 const STRAIGHT: f64 = 0.15;
 /// The least number of points or triangles for one thread.
 const OF_THREAD: usize = 2048;
-/// Marks what is missing.
+/// Marks a missing entry.
 const NONE: u32 = u32::MAX;
 
 /// The carried surface of a body.

@@ -79,7 +79,7 @@ impl Growing {
         Ok(self.grown())
     }
 
-    /// Cuts off what is left of bytes that could not be appended.
+    /// Cuts off the rest of bytes that could not be appended.
     pub(crate) fn cut(&self) -> io::Result<()> {
         self.file.set_len(self.length)
     }

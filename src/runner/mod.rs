@@ -51,7 +51,7 @@ struct Running {
     traced: Vec<Traced>,
     body: Arc<Body>,
     series: TimeSeries,
-    /// Its rows between frames, until they are taken; `None` if nobody wants them.
+    /// Its rows between frames, until they are taken; `None` if none are wanted.
     rows: Option<VecDeque<TableRow>>,
     /// The threads within the run.
     threads: usize,
@@ -285,7 +285,7 @@ impl Running {
         self.world.status() == Status::Ok && fits(&scene.runs[self.run], &self.world.state().position)
     }
 
-    /// Shows what a recording of its world knows about its end, and searches for nothing more.
+    /// Shows a recording of its world, with the recorded end; nothing is searched for.
     fn showing(mut self, recording: &Arc<Recorded>) -> Self {
         let Self { world, .. } = &mut self;
         let mut last_fit = None;

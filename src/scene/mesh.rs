@@ -1,4 +1,4 @@
-//! Mesh files: read, put upright in metres, filled, and what is wrong with them in words.
+//! Mesh files: read, put upright in metres, filled, and their flaws in words.
 
 mod summary;
 
@@ -142,30 +142,28 @@ pub(crate) fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2
 /// The mended flaws of a surface in words; empty for nothing. Points at one place are no flaw: some formats have no
 /// others.
 pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
-    [
+    counted([
         (flaws.near, "point", " welded that only round-off sets apart"),
         (flaws.degenerate, "triangle", " without area left out"),
         (flaws.doubled, "doubled triangle", " left out"),
         (flaws.turned, "triangle", " turned over"),
-    ]
-    .into_iter()
-    .filter(|(number, ..)| *number > 0)
-    .map(|(number, one, what)| several(number, one) + what)
-    .collect()
+    ])
+}
+
+/// Numbers of flaws above zero, each before a word for one and more words.
+fn counted<const N: usize>(flaws: [(usize, &str, &str); N]) -> Vec<String> {
+    let some = flaws.into_iter().filter(|(number, ..)| *number > 0);
+    some.map(|(number, one, what)| several(number, one) + what).collect()
 }
 
 /// The flaws of a surface that are left: the predicate of a sentence about it, and a remedy. `closed` says whether it has an inside
 /// all the same.
 pub(crate) fn left(flaws: &Flaws, closed: bool) -> Option<(String, String)> {
-    let left: Vec<String> = [
+    let left = counted([
         (flaws.boundary, "open edge", ""),
         (flaws.non_manifold, "edge", " of three triangles or more"),
         (flaws.inconsistent, "edge", " whose triangles look to different sides"),
-    ]
-    .into_iter()
-    .filter(|(number, ..)| *number > 0)
-    .map(|(number, one, what)| several(number, one) + what)
-    .collect();
+    ]);
     let (what, help) = match closed {
         true => ("where parts may be joined or not", "separate or join them in the program that made it"),
         false => (

@@ -146,7 +146,7 @@ pub(super) fn value(points: &[[f64; 2]], at: f64) -> Option<f64> {
     Some(one + (at - from) / (to - from) * (other - one))
 }
 
-/// Draws the band that lines cover between two places, in each column with what is up to `reach` beside it (px).
+/// Draws the band that lines cover between two places, in each column with all places up to `reach` beside it (px).
 fn band(
     writer: &mut Writer<'_>,
     place: PlotArea,
@@ -167,7 +167,7 @@ fn inside(points: &[[f64; 2]], place: PlotArea, paint: (Colour, f64)) -> Option<
     (!path.is_empty()).then(|| Item::fill(path, paint))
 }
 
-/// The highest and the lowest places that lines cover between two places, at each pixel with what is up to `reach`
+/// The highest and the lowest places that lines cover between two places, at each pixel with all places up to `reach`
 /// beside it (px).
 fn envelope(lines: &[Vec<[f64; 2]>], [from, to]: [f64; 2], reach: f64) -> [Vec<[f64; 2]>; 2] {
     let mut both = [Vec::new(), Vec::new()];

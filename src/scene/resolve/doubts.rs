@@ -1,4 +1,4 @@
-//! Warnings about a resolved scene: what is allowed, but probably a mistake.
+//! Warnings about a resolved scene: allowed settings that are probably mistakes.
 
 use super::Typed;
 use crate::look::{View, font};

@@ -131,7 +131,7 @@ impl ReadRecording {
     }
 }
 
-/// A body of a recording's own, the number of its elements that were turned over, and what is left out of its file.
+/// A body of a recording's own, the number of its elements that were turned over, and the parts left out of its file.
 type Listed = (Lists, usize, Vec<String>);
 
 impl Own {

@@ -1,4 +1,4 @@
-//! The table of a body in a scene, and what it lists or names.
+//! The table of a body in a scene, and its nodes and elements before the body is made.
 
 use super::lists::Lists;
 use super::{KeyPath, elements};
@@ -36,7 +36,7 @@ impl BodyTable<'_> {
         if self.file.convex { Solids::Convex } else { usual }
     }
 
-    /// A body, or `None` after reporting what the checks of its table have not found.
+    /// A body, or `None` after reporting a mistake that the checks of its table have not found.
     pub(super) fn sound(&self, made: Result<Body, BodyError>, report: &mut Collector<'_>) -> Option<Body> {
         made.map_err(|error| report.at(&self.place, error.to_string(), "correct its nodes, elements or masses")).ok()
     }

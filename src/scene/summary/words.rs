@@ -138,7 +138,7 @@ fn constraint(nodes: &[usize], body: &str, grip: &Grip, duration: f64) -> String
     format!("{nodes}{of} from {} s {until}{note}", short(grip.from))
 }
 
-/// A name before what it has; nothing without a name.
+/// A name before the words about it; nothing without a name.
 fn titled(name: &str) -> String {
     if name.is_empty() { String::new() } else { format!("{name}: ") }
 }
