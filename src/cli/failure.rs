@@ -10,13 +10,19 @@ use std::process::ExitCode;
 
 /// How the program ends. The numbers are part of its interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Status {
+pub enum Status {
+    /// All is done.
     Done = 0,
+    /// A comparison found a difference.
     Difference = 1,
+    /// Wrong usage, or mistakes in a scene.
     Usage = 2,
+    /// No graphics adapter can be used.
     #[cfg(feature = "render")]
     Adapter = 3,
+    /// Reading or writing failed.
     Files = 4,
+    /// A signal asked the program to end.
     Interrupted = 130,
 }
 
@@ -28,7 +34,7 @@ impl From<Status> for ExitCode {
 
 /// Why a command ended early.
 #[derive(Debug)]
-pub(super) struct Failure {
+pub struct Failure {
     status: Status,
     /// The message; `None` if it was printed already.
     message: Option<String>,
@@ -36,7 +42,7 @@ pub(super) struct Failure {
 
 impl Failure {
     /// Wrong usage, or mistakes in a scene.
-    pub(super) fn usage(message: impl Into<String>) -> Self {
+    pub fn usage(message: impl Into<String>) -> Self {
         Self { status: Status::Usage, message: Some(message.into()) }
     }
 
@@ -46,7 +52,7 @@ impl Failure {
     }
 
     /// Reading or writing failed.
-    pub(super) fn files(message: impl Into<String>) -> Self {
+    pub fn files(message: impl Into<String>) -> Self {
         Self { status: Status::Files, message: Some(message.into()) }
     }
 
@@ -63,7 +69,7 @@ impl Failure {
     }
 
     /// Prints the message and returns the exit status.
-    pub(super) fn report(self) -> Status {
+    pub fn report(self) -> Status {
         if let Some(message) = &self.message {
             complain(message);
         }

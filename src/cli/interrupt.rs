@@ -15,7 +15,7 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// The first request only asks the command to end. Ctrl-C a second or more later ends the program at once; no file is
 /// then left half-written under its final name. Signals within that second count as one request, since `timeout` sends
 /// its signal twice. Other signals are never more than a request: they come from programs, which can send SIGKILL.
-pub(super) fn listen() {
+pub fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
         let mut first: Option<Instant> = None;
@@ -85,6 +85,6 @@ fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
 }
 
 /// Whether an interruption was requested.
-pub(super) fn requested() -> bool {
+pub fn requested() -> bool {
     REQUESTED.load(Ordering::SeqCst)
 }

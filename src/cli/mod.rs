@@ -41,9 +41,14 @@ mod still;
 
 #[cfg(feature = "render")]
 pub use driver::settle;
+pub use {
+    console::print,
+    failure::{Failure, Status},
+    interrupt::{listen, requested},
+    options::ThreadOptions,
+};
 
 use clap::{Parser, Subcommand};
-use failure::{Failure, Status};
 use std::ffi::OsString;
 use std::process::ExitCode;
 

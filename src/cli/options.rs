@@ -98,7 +98,7 @@ impl ValueEnum for export::Format {
 
 /// The number of threads.
 #[derive(Args, Clone, Copy, Debug)]
-pub(super) struct ThreadOptions {
+pub struct ThreadOptions {
     /// Number of threads, which does not change the results [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -106,7 +106,7 @@ pub(super) struct ThreadOptions {
 
 impl ThreadOptions {
     /// The requested number, or one for each processor.
-    pub(super) fn count(self) -> usize {
+    pub fn count(self) -> usize {
         self.count_or(processors())
     }
 

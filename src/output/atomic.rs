@@ -89,7 +89,7 @@ impl AtomicFile {
 ///
 /// # Errors
 /// If it cannot be written; an earlier file of that name is then unchanged.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let mut file = AtomicFile::create(path)?;
     file.append(bytes)?;
     file.commit()

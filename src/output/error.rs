@@ -57,7 +57,7 @@ pub(super) fn kind_of(found: &Metadata) -> &'static str {
 ///
 /// # Errors
 /// If the path, or a part of it, is something else than a folder.
-pub(crate) fn is_folder(path: &Path) -> Result<bool, OutputError> {
+pub fn is_folder(path: &Path) -> Result<bool, OutputError> {
     let nearest = path.ancestors().find_map(|above| Some((above, fs::metadata(above).ok()?)));
     match nearest {
         Some((above, found)) if !found.is_dir() => {
@@ -69,7 +69,7 @@ pub(crate) fn is_folder(path: &Path) -> Result<bool, OutputError> {
 }
 
 /// Reads a whole file; `None` if there is none, or if it is not a file: opening a pipe would block.
-pub(crate) fn read_file(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
+pub fn read_file(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
     match fs::metadata(path) {
         Ok(found) if found.is_file() => fs::read(path).map(Some).map_err(OutputError::reading(path)),
         Ok(_) => Ok(None),

@@ -26,11 +26,13 @@ mod summary;
 mod timing;
 mod whose;
 
-pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
+pub use atomic::write_whole;
+pub(crate) use atomic::{AtomicFile, folder_of};
 pub(crate) use checkpoint::{Checkpoint, FramePictures, Manifest, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::{recorded, state_digest};
-pub(crate) use error::{OutputError, is_folder, read_file};
+pub(crate) use error::OutputError;
+pub use error::{is_folder, read_file};
 pub(crate) use extremes::Extremes;
 pub(crate) use folder::{Access, Claimed, Folder};
 pub use frame_folder::FrameFolder;
@@ -39,8 +41,7 @@ pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use summary::{Numbers, Outcome, RunEntry, RunStatus, SUMMARY_FILE, Summary, document};
-pub(crate) use timing::{Clock, thread_time};
-pub use timing::{Spent, Timings};
+pub use timing::{Clock, Spent, Timings, thread_time};
 pub(crate) use whose::Whose;
 #[cfg(feature = "render")]
 pub(crate) use {
@@ -52,7 +53,7 @@ pub(crate) use {
 };
 
 /// Rows of equal length as CSV (RFC 4180, with line feeds), quoted where necessary.
-pub(crate) fn rows_as_csv(rows: impl IntoIterator<Item = impl IntoIterator<Item = impl AsRef<[u8]>>>) -> Vec<u8> {
+pub fn rows_as_csv(rows: impl IntoIterator<Item = impl IntoIterator<Item = impl AsRef<[u8]>>>) -> Vec<u8> {
     let mut table = csv::Writer::from_writer(Vec::new());
     rows.into_iter().for_each(|row| table.write_record(row).expect("rows of equal length into memory"));
     table.into_inner().expect("memory takes all")
@@ -61,7 +62,7 @@ pub(crate) fn rows_as_csv(rows: impl IntoIterator<Item = impl IntoIterator<Item 
 /// A number with 17 significant digits, which identify a double precision number uniquely.
 ///
 /// Not-a-number is `nan` and infinity `inf`, which most languages can parse.
-pub(crate) fn exact(number: f64) -> String {
+pub fn exact(number: f64) -> String {
     if number.is_nan() { "nan".to_owned() } else { format!("{number:.16e}") }
 }
 

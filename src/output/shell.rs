@@ -10,6 +10,6 @@ pub(crate) fn word(word: &str) -> String {
 }
 
 /// A command line.
-pub(crate) fn line(words: &[String]) -> String {
+pub fn line(words: &[String]) -> String {
     words.iter().map(|one| word(one)).collect::<Vec<_>>().join(" ")
 }

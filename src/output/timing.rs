@@ -46,7 +46,7 @@ pub struct Timings {
 
 /// A moment from which wall time and processor time are measured.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Clock {
+pub struct Clock {
     wall: Instant,
     cpu: Option<Duration>,
     read: fn() -> Option<Duration>,
@@ -54,7 +54,7 @@ pub(crate) struct Clock {
 
 impl Clock {
     /// Measures the processor time of the calling thread only; must be read on the same thread.
-    pub(crate) fn thread() -> Self {
+    pub fn thread() -> Self {
         Self::new(thread_time)
     }
 
@@ -68,14 +68,14 @@ impl Clock {
     }
 
     /// The time spent since.
-    pub(crate) fn spent(&self) -> Spent {
+    pub fn spent(&self) -> Spent {
         let cpu = self.cpu.zip((self.read)()).map(|(start, now)| now.saturating_sub(start).as_secs_f64());
         Spent { wall: self.wall.elapsed().as_secs_f64(), cpu }
     }
 }
 
 /// Processor time of the calling thread so far.
-pub(crate) fn thread_time() -> Option<Duration> {
+pub fn thread_time() -> Option<Duration> {
     #[cfg(unix)]
     return processor_clock(rustix::time::ClockId::ThreadCPUTime);
     #[cfg(not(unix))]

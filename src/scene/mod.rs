@@ -16,7 +16,7 @@ mod drawn;
 mod error;
 pub(crate) mod figure;
 mod file;
-mod generate;
+pub(crate) mod generate;
 mod limits;
 mod load;
 pub(crate) mod mesh;

@@ -1,9 +1,9 @@
 //! The folder of a study, which belongs to one command, and the notes from which an interrupted study continues.
 
-use crate::failure::Failure;
+use localshape::internals::{Failure, is_folder, read_file, write_whole};
 use std::collections::HashMap;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -23,35 +23,36 @@ impl Folder {
     /// # Errors
     /// A folder that is refused, or cannot be written to.
     pub(crate) fn new(path: PathBuf, name: &'static str, command: &str, overwrite: bool) -> Result<Self, Failure> {
-        if let Some(file) = path.ancestors().find(|path| path.is_file()) {
-            let file = file.display();
-            return Err(Failure::files(format!("{file} is a file, not a folder; choose another folder with -o")));
-        }
-        let probe = hidden(&path, name);
-        fs::create_dir_all(&path)
-            .and_then(|()| fs::write(&probe, ""))
-            .and_then(|()| fs::remove_file(&probe))
-            .map_err(|error| cannot_write(&path, &error))?;
+        is_folder(&path)?;
+        let cannot_write = |error| Failure::files(format!("cannot write {}: {error}", path.display()));
+        fs::create_dir_all(&path).and_then(|()| tempfile::tempfile_in(&path)).map_err(cannot_write)?;
         let folder = Self { mark: format!("<!-- {command} -->"), path, name };
-        let refused = |what: String| {
-            let path = folder.path.display();
-            Err(Failure::usage(format!(
-                "{path} holds {what}; choose another folder with -o, or replace with --overwrite"
-            )))
-        };
-        let marks: Vec<_> = ["md", "unfinished"].iter().filter_map(|kind| folder.first_line(kind)).collect();
-        match marks.iter().find(|mark| **mark != folder.mark) {
-            _ if overwrite => Ok(folder),
-            Some(mark) => match mark.strip_prefix("<!-- ").and_then(|mark| mark.strip_suffix(" -->")) {
-                Some(other) => refused(format!("the study of `{other}`")),
-                None => refused(format!("{name}.md, which was not written by localshape-study")),
-            },
-            None if !marks.is_empty() => Ok(folder),
-            None => match folder.some_file() {
-                Some(file) => refused(format!("{file}, which was not written by localshape-study")),
-                None => Ok(folder),
-            },
+        match folder.strange()?.filter(|_| !overwrite) {
+            Some(what) => Err(Failure::usage(format!(
+                "{} holds {what}; choose another folder with -o, or replace with --overwrite",
+                folder.path.display()
+            ))),
+            None => Ok(folder),
         }
+    }
+
+    /// What the folder holds that this command did not write, in words.
+    fn strange(&self) -> Result<Option<String>, Failure> {
+        let unknown = |file: String| format!("{file}, which was not written by localshape-study");
+        let mut is_known = false;
+        for file in [format!("{}.md", self.name), format!("{}.unfinished", self.name)] {
+            let Some(bytes) = read_file(&self.path.join(&file))? else { continue };
+            let text = String::from_utf8_lossy(&bytes);
+            let mark = text.lines().next().unwrap_or_default();
+            if mark != self.mark {
+                let other = mark.strip_prefix("<!-- ").and_then(|mark| mark.strip_suffix(" -->"));
+                return Ok(Some(other.map_or_else(|| unknown(file), |other| format!("the study of `{other}`"))));
+            }
+            is_known = true;
+        }
+        let names = fs::read_dir(&self.path).into_iter().flatten();
+        let names = names.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        Ok(names.filter(|name| !is_known && !name.starts_with('.')).min().map(unknown))
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -63,31 +64,12 @@ impl Folder {
         &self.mark
     }
 
-    /// The first line of a file of the study, if there is one.
-    fn first_line(&self, kind: &str) -> Option<String> {
-        let path = self.path.join(format!("{}.{kind}", self.name));
-        // Opening a pipe would block.
-        let text = path.is_file().then(|| fs::read(path))?.ok()?;
-        Some(String::from_utf8_lossy(text.split(|&byte| byte == b'\n').next()?).into_owned())
-    }
-
-    /// The first file in the folder by name, except hidden ones.
-    fn some_file(&self) -> Option<String> {
-        let names = fs::read_dir(&self.path).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-        names.filter(|name| !name.starts_with('.')).min()
-    }
-
     /// Writes files, each completely or not at all.
     ///
     /// # Errors
     /// A file that cannot be written. The files before it are kept.
     pub(crate) fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
-        for (name, bytes) in files {
-            let (part, path) = (hidden(&self.path, name), self.path.join(name));
-            let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, &path));
-            written.map_err(|error| cannot_write(&path, &error))?;
-        }
-        Ok(())
+        Ok(files.iter().try_for_each(|(name, bytes)| write_whole(&self.path.join(name), bytes))?)
     }
 
     /// The notes of this study. They have the findings of an interrupted study with the same digest.
@@ -95,15 +77,6 @@ impl Folder {
         let path = self.path.join(format!("{}.unfinished", self.name));
         Notes::new(path, format!("{}\n{} {digest}\n", self.mark, env!("CARGO_PKG_VERSION")))
     }
-}
-
-/// The name of an incomplete file.
-fn hidden(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!(".{name}.part"))
-}
-
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::files(format!("cannot write {}: {error}", path.display()))
 }
 
 /// Notes of a study: a file with a line for each finding. After an interruption, the same command continues from it.

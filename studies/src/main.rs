@@ -4,14 +4,11 @@
 //! A study has a name, a measurement, and findings: text, tables and pages ([`study`]). It does not depend on files or on the
 //! command line.
 
-mod failure;
 mod folder;
 mod material;
 mod methods;
 mod models;
-#[cfg(feature = "render")]
 mod page;
-mod progress;
 mod random;
 mod ratio;
 #[cfg(test)]
@@ -29,7 +26,7 @@ mod work_precision;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
-use failure::Failure;
+use localshape::internals::{Failure, ThreadOptions};
 use localshape::{Limits, Scene};
 use material::{Beam, Cook, Patch, Time};
 use ratio::Ratio;
@@ -94,7 +91,7 @@ enum Name {
         #[command(flatten)]
         of: OfScene,
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadOptions,
     },
     /// Falls, impacts, degenerate starts and elements, very long runs: the outcome of each with every model
     Stress {
@@ -102,22 +99,22 @@ enum Name {
         #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(models::kinds()))]
         model: Vec<String>,
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadOptions,
     },
     /// The models as materials: cantilevers of few cells beside the theory of beams, the elastica, modes and waves
     Beam {
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadOptions,
     },
     /// The patch test: irregular blocks in uniform strain
     Patch {
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadOptions,
     },
     /// Cook's membrane in the plane, beside the literature
     Cook {
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadOptions,
     },
     /// The error of the end of one beam against the time of a simulated second, by model and resolution
     BeamTime,
@@ -128,7 +125,7 @@ enum Name {
         #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
         orientations: u32,
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadOptions,
     },
     /// The computation time of the shape model divided by that of mass-spring, beside the paper's ratio (section 4)
     Ratio {
@@ -154,23 +151,16 @@ struct OfScene {
     full: bool,
 }
 
-/// A word of a command, in single quotes if a shell requires them.
-fn quoted(word: &str) -> String {
-    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./+".contains(letter);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
-}
-
 /// The arguments that name models.
-fn of_models(models: &[String]) -> String {
-    models.iter().map(|model| format!(" --model {model}")).collect()
+fn of_models(models: &[String]) -> Vec<String> {
+    models.iter().flat_map(|model| ["--model".to_owned(), model.clone()]).collect()
 }
 
 impl OfScene {
     /// The arguments that repeat it.
-    fn arguments(&self) -> String {
-        let scene =
-            self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", quoted(&path.to_string_lossy())));
-        format!("{scene}{}{}", of_models(&self.model), if self.full { " --full" } else { "" })
+    fn arguments(&self) -> Vec<String> {
+        let scene = self.scene.iter().map(|path| path.to_string_lossy().into_owned());
+        scene.chain(of_models(&self.model)).chain(self.full.then(|| "--full".to_owned())).collect()
     }
 
     fn load(&self) -> Result<Option<Scene>, Failure> {
@@ -194,20 +184,6 @@ impl OfScene {
     }
 }
 
-/// Options of studies with the same results for any number of threads.
-#[derive(Args, Debug)]
-struct Threads {
-    /// Number of threads, which does not change the results [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-}
-
-impl Threads {
-    fn count(&self) -> usize {
-        self.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from)
-    }
-}
-
 impl Name {
     fn threads(&self) -> usize {
         match self {
@@ -227,7 +203,7 @@ impl Name {
             Self::Rotation => Box::new(Rotation::default()),
             Self::WorkPrecision { only, of } => {
                 let mut arguments = of.arguments();
-                only.iter().for_each(|run| arguments += &format!(" --only {}", quoted(run)));
+                arguments.extend(only.iter().flat_map(|run| ["--only".to_owned(), run.clone()]));
                 let effort = if of.full { Effort::FULL } else { Effort::USUAL };
                 let subjects =
                     of.load()?.map_or_else(|| Ok(work_precision::usual(&of.model)), |scene| subjects(&scene, &only))?;

@@ -8,13 +8,12 @@
 //! time.
 
 use crate::folder::Notes;
-use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study};
+use crate::study::{Findings, Study, Watch, built_in};
 use crate::table::{Table, figure, typed};
-use crate::turns::{Clock, kind_of_time, take_turns};
+use crate::turns::{kind_of_time, seconds, spent, take_turns};
+use localshape::Scene;
 use localshape::sim::Springs;
-use localshape::{Limits, Scene};
 
 /// Computation time of the shape model divided by that of mass-spring, as printed in section 4.
 pub(crate) const PRINTED: f64 = 1.05;
@@ -52,9 +51,8 @@ impl Study for Ratio {
         "ratio"
     }
 
-    fn command(&self) -> String {
-        let threads = if self.threads == 1 { String::new() } else { format!(" --threads {}", self.threads) };
-        format!("localshape-study ratio{threads}")
+    fn arguments(&self) -> Vec<String> {
+        if self.threads == 1 { Vec::new() } else { vec!["--threads".to_owned(), self.threads.to_string()] }
     }
 
     fn work(&self) -> u64 {
@@ -63,7 +61,7 @@ impl Study for Ratio {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let ratios = measure(self, watch)?;
-        Some(Findings::new(ratios.text(), [("ratio", ratios.table())]))
+        Some(Findings { text: ratios.text(), tables: vec![("ratio", ratios.table())], page: None })
     }
 }
 
@@ -105,10 +103,9 @@ pub(crate) fn measure(protocol: &Ratio, watch: &Watch<'_>) -> Option<Ratios> {
         worlds.iter_mut().for_each(|world| world.advance(1));
         // ns for one cube and step.
         let times = take_turns(worlds.len(), protocol.rounds, watch, |run| {
-            let clock = Clock::start();
-            worlds[run].advance(steps);
-            let spent = if protocol.threads == 1 { clock.seconds() } else { clock.wall_seconds() };
-            spent * 1e9 / (steps * cubes) as f64
+            let task = || worlds[run].advance(steps);
+            let time = if protocol.threads == 1 { seconds(task) } else { spent(task).wall };
+            time * 1e9 / (steps * cubes) as f64
         })?;
         let (shape, others) = times.split_first()?;
         for ((&springs, times), run) in SPRINGS.iter().zip(others).zip(&scene.runs[1..]) {
@@ -146,26 +143,13 @@ fn block(side: u32) -> Scene {
             "
         );
     }
-    Scene::parse(&text, "ratio", &Limits::default()).unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
+    built_in(&text, "ratio")
 }
 
 impl Ratios {
     /// The table as text.
     fn text(&self) -> String {
         let Ratio { threads, rounds, .. } = self.protocol;
-        let mut text = format!(
-            "# Computation time of the shape model over that of mass-spring\n\n\
-            Whole steps of blocks of cubes on a floor, {} time of {threads} thread{} ({} {}). Both models are vectorised \
-            (`kernel = \"fast\"`): the shape model, with two passes of Eq. (15), by the fused kernel of lattices, mass-spring by \
-            the kernel of springs that repeat from node to node. Medians of {rounds} rounds in which all models take turns, \
-            of ratios with their quartiles in parentheses. The paper \
-            gives {PRINTED}, without naming body, springs and machine. Other machines, and other load on this one, give \
-            other times. Springs that cubes share are computed once.\n\n",
-            self.protocol.kind_of_time(),
-            if threads == 1 { "" } else { "s" },
-            std::env::consts::ARCH,
-            std::env::consts::OS,
-        );
         let row = |one: &Comparison| {
             let per_cube = one.count as f64 / one.cubes as f64;
             let Spread { lower, median, upper, .. } = one.ratio;
@@ -180,8 +164,15 @@ impl Ratios {
                 ("paper", PRINTED.to_string().into()),
             ]
         };
-        text += &Table::of(self.comparisons.iter().map(row)).markdown(2);
-        text
+        format!(
+            include_str!("ratio.md"),
+            kind_of_time = self.protocol.kind_of_time(),
+            threads = format_args!("{threads} thread{}", if threads == 1 { "" } else { "s" }),
+            machine = format_args!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            rounds = rounds,
+            printed = PRINTED,
+            table = Table::of(self.comparisons.iter().map(row)).markdown(2),
+        )
     }
 
     /// All numbers, with all digits.

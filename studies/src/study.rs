@@ -1,23 +1,28 @@
 //! The structure of all studies: a name, a measurement, and findings as text, tables and pages.
 
-use crate::failure::{Failure, Status};
 use crate::folder::{Folder, Notes};
-use crate::progress::{self, Watch};
+use crate::page::Page;
 use crate::table::Table;
 use clap::{Args, ValueHint};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use localshape::Scene;
+use localshape::internals::{Failure, Status, command_line, listen, print, requested};
 use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 use serde_json::{Map, Value, json};
-use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
+
+/// Called with the amount of work just done, from any thread; `false` stops the measurement.
+pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
 /// A measurement that is ready to be made.
 pub(crate) trait Study: Send + Sync {
     /// Its name, and that of its folder and files.
     fn name(&self) -> &'static str;
 
-    /// The command that repeats it.
-    fn command(&self) -> String {
-        format!("localshape-study {}", self.name())
+    /// The arguments of the command that repeats it.
+    fn arguments(&self) -> Vec<String> {
+        Vec::new()
     }
 
     /// The digest of the study's parameters besides the command. Notes of an interrupted study depend on it.
@@ -39,21 +44,23 @@ pub(crate) struct Findings {
     pub(crate) text: String,
     /// The tables with all digits, each with the name of its CSV file.
     pub(crate) tables: Vec<(&'static str, Table)>,
-    /// The pages, each with the name of its SVG and PNG files, without extensions.
-    #[cfg(feature = "render")]
-    pub(crate) pages: Vec<(&'static str, crate::page::Page)>,
+    /// The plots or maps; `None` without any.
+    pub(crate) page: Option<Page>,
 }
 
-impl Findings {
-    /// Findings without pages.
-    pub(crate) fn new(text: String, tables: impl Into<Vec<(&'static str, Table)>>) -> Self {
-        Self {
-            text,
-            tables: tables.into(),
-            #[cfg(feature = "render")]
-            pages: Vec::new(),
-        }
-    }
+/// The results for all items, on the caller's threads; `None` if `watch`, which is called after each, stops them.
+pub(crate) fn each<T: Sync, R: Send>(
+    items: &[T],
+    watch: &Watch<'_>,
+    result: impl Fn(&T) -> R + Sync,
+) -> Option<Vec<R>> {
+    let one = |item| watch(0).then(|| result(item)).filter(|_| watch(1));
+    items.par_iter().map(one).collect()
+}
+
+/// A scene of a study.
+pub(crate) fn built_in(text: &str, name: &str) -> Scene {
+    Scene::parse(text, name, &Default::default()).unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
 }
 
 /// Options of all studies.
@@ -78,27 +85,25 @@ pub(crate) struct Options {
 
 /// Makes a study: measures with a number of threads, writes its files, and prints its text.
 pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Result<Status, Failure> {
-    let (name, command) = (study.name(), study.command());
+    let name = study.name();
+    let words = ["localshape-study", name].map(str::to_owned).into_iter().chain(study.arguments());
+    let command = command_line(&words.collect::<Vec<_>>());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
+    listen();
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::files(format!("cannot start threads: {error}")))?;
     let notes = folder.notes(study.digest());
-    let found =
-        progress::shown(name, study.work(), options.quiet, |watch| pool.install(|| study.measure(watch, &notes)));
-    let Some(Findings { text, tables, .. }) = &found else {
+    let Some(found) = measured(study, threads, options.quiet, &notes)? else {
         if !options.quiet && !options.json {
             let goes_on = if notes.are_kept() { "; the same command continues from here" } else { "" };
             print(&format!("interrupted; {name} was not made{goes_on}\n"))?;
         }
         return Ok(Status::Interrupted);
     };
-    let text = format!("{}\n{text}", folder.mark());
+    let text = format!("{}\n{}", folder.mark(), found.text);
     let mut files = vec![(format!("{name}.md"), text.clone().into_bytes())];
-    files.extend(tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
-    #[cfg(feature = "render")]
-    for (name, page) in found.iter().flat_map(|found| &found.pages) {
-        let [svg, png] = page.files()?;
+    files.extend(found.tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
+    if let Some(page) = &found.page {
+        let [svg, png] = page.files().map_err(|error| Failure::files(error.to_string()))?;
         files.extend([(format!("{name}.svg"), svg), (format!("{name}.png"), png)]);
     }
     folder.write(&files)?;
@@ -106,7 +111,7 @@ pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Resu
     let names: Vec<_> = files.iter().map(|(name, _)| name.as_str()).collect();
     if options.json {
         let tables: Map<String, Value> =
-            tables.iter().map(|(name, table)| ((*name).to_owned(), table.json())).collect();
+            found.tables.iter().map(|(name, table)| ((*name).to_owned(), table.json())).collect();
         let document = json!({ "study": name, "folder": folder.path(), "files": names, "tables": tables });
         print(&format!("{document:#}\n"))?;
     } else if !options.quiet {
@@ -115,13 +120,18 @@ pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Resu
     Ok(Status::Done)
 }
 
-/// Prints results. A closed pipe is not an error.
-fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::files(format!("cannot write to standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
+/// Measures with a number of threads, below a bar of progress in a terminal; `None` after an interruption.
+fn measured(study: &dyn Study, threads: usize, is_quiet: bool, notes: &Notes) -> Result<Option<Findings>, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::files(format!("cannot start threads: {error}")))?;
+    let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {eta} left").expect("a template of known keys");
+    let target = if is_quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(study.work()), target).with_style(style).with_prefix(study.name());
+    let watch = |more| {
+        bar.inc(more);
+        !requested()
+    };
+    let found = pool.install(|| study.measure(&watch, notes));
+    bar.finish_and_clear();
+    Ok(found)
 }

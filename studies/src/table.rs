@@ -1,5 +1,6 @@
 //! Rows and columns as CSV, as Markdown and as JSON.
 
+use localshape::internals::{exact, rows_as_csv};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -23,8 +24,7 @@ impl Cell {
             Self::Text(text) => text.clone(),
             Self::Count(count) => count.to_string(),
             Self::Given(number) => number.to_string(),
-            Self::Number(number) if number.is_nan() => "nan".to_owned(),
-            Self::Number(number) => format!("{number:.16e}"),
+            Self::Number(number) => exact(*number),
         }
     }
 
@@ -73,6 +73,11 @@ pub(crate) struct Table {
 }
 
 impl Table {
+    /// A table with some headings and further ones after them.
+    pub(crate) fn wide(heads: &[&str], more: impl IntoIterator<Item = String>, rows: Vec<Vec<Cell>>) -> Self {
+        Self { heads: heads.iter().map(|head| (*head).to_owned()).chain(more).collect(), rows }
+    }
+
     /// A table from rows of cells, each with the heading of its column.
     pub(crate) fn of<const N: usize>(rows: impl IntoIterator<Item = [(&'static str, Cell); N]>) -> Self {
         let mut table = Self::default();
@@ -85,22 +90,20 @@ impl Table {
 
     /// The table as CSV.
     pub(crate) fn csv(&self) -> String {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let mut write = |row: &mut dyn Iterator<Item = String>| writer.write_record(row).expect("writing to memory");
-        write(&mut self.heads.iter().cloned());
-        self.rows.iter().for_each(|row| write(&mut row.iter().map(Cell::text)));
-        String::from_utf8(writer.into_inner().expect("writing to memory")).expect("made of texts")
+        let rows = self.rows.iter().map(|row| row.iter().map(Cell::text).collect());
+        let csv = rows_as_csv([self.heads.clone()].into_iter().chain(rows));
+        String::from_utf8(csv).expect("made of texts")
     }
 
     /// The table as Markdown, with the first `left` columns aligned left and the others, numbers, aligned right.
     pub(crate) fn markdown(&self, left: usize) -> String {
         let escaped = |cell: &str| cell.replace('|', "\\|");
-        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let line = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
         let rule = |column| if column < left { "---" } else { "---:" }.to_owned();
-        let mut text = line(self.heads.iter().map(|head| escaped(head)).collect());
-        text += &line((0..self.heads.len()).map(rule).collect());
-        self.rows.iter().for_each(|row| text += &line(row.iter().map(|cell| escaped(&cell.text())).collect()));
-        text
+        let heads = line(self.heads.iter().map(|head| escaped(head)).collect());
+        let rules = line((0..self.heads.len()).map(rule).collect());
+        let rows = self.rows.iter().map(|row| line(row.iter().map(|cell| escaped(&cell.text())).collect()));
+        [heads, rules].into_iter().chain(rows).collect::<Vec<_>>().join("\n")
     }
 
     /// The table as a list of objects.
@@ -120,6 +123,11 @@ pub(crate) fn figure(number: f64) -> String {
         Some(exponent @ -3..=5) => format!("{number:.*}", (2 - exponent).max(0) as usize),
         _ => short,
     }
+}
+
+/// A text, or a dash for none.
+pub(crate) fn or_dash<T: Into<String>>(text: Option<T>) -> Cell {
+    text.map_or_else(|| "–".to_owned(), T::into).into()
 }
 
 /// A choice as written in a scene.

@@ -1,48 +1,24 @@
 //! Times of tasks that take turns, so that other load of the machine affects all alike.
 
-use crate::progress::Watch;
-use std::time::Instant;
+use crate::study::Watch;
+use localshape::internals::{Clock, Spent, thread_time};
 
-/// The time of a thread: its processor time, or wall time if the system does not provide it.
-pub(crate) struct Clock {
-    wall: Instant,
-    processor: Option<f64>,
+/// The time of this thread for a task (s): its processor time, or wall time if the system does not provide it.
+pub(crate) fn seconds(task: impl FnOnce()) -> f64 {
+    let Spent { wall, cpu } = spent(task);
+    cpu.unwrap_or(wall)
 }
 
-impl Clock {
-    /// Starts the clock.
-    pub(crate) fn start() -> Self {
-        Self { wall: Instant::now(), processor: processor_time() }
-    }
-
-    /// The time since the start (s).
-    pub(crate) fn seconds(&self) -> f64 {
-        match (self.processor, processor_time()) {
-            (Some(before), Some(now)) => now - before,
-            _ => self.wall_seconds(),
-        }
-    }
-
-    /// The wall time since the start (s).
-    pub(crate) fn wall_seconds(&self) -> f64 {
-        self.wall.elapsed().as_secs_f64()
-    }
+/// The wall time and this thread's processor time for a task (s).
+pub(crate) fn spent(task: impl FnOnce()) -> Spent {
+    let clock = Clock::thread();
+    task();
+    clock.spent()
 }
 
-/// The kind of time of [`Clock::seconds`].
+/// The kind of time of [`seconds`].
 pub(crate) fn kind_of_time() -> &'static str {
-    if processor_time().is_some() { "processor" } else { "wall" }
-}
-
-/// The processor time of this thread (s), if the system provides it.
-fn processor_time() -> Option<f64> {
-    #[cfg(unix)]
-    {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
-    }
-    #[cfg(not(unix))]
-    None
+    if thread_time().is_some() { "processor" } else { "wall" }
 }
 
 /// The times of a number of turns of each of `count` tasks, which `time` runs by their numbers; `None` if `watch`,

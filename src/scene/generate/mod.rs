@@ -6,7 +6,7 @@ mod block;
 mod irregular;
 mod lattice;
 mod mixed;
-mod random;
+pub(crate) mod random;
 mod shapes;
 mod start;
 

@@ -8,7 +8,7 @@ pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {
 }
 
 /// A number from 0 to below 1; see [`hash`].
-pub(super) fn unit(seed: u32, index: u64, usage: u64) -> f64 {
+pub fn unit(seed: u32, index: u64, usage: u64) -> f64 {
     // A double holds the upper 53 bits.
     (hash(seed, index, usage) >> 11) as f64 / (1u64 << 53) as f64
 }

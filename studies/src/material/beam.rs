@@ -6,12 +6,11 @@ use super::bar::Bar;
 use super::theory::{elastica, timoshenko};
 use super::{Elements, MENDED, MODELS, Model, decimals};
 use crate::folder::Notes;
-use crate::progress::Watch;
-use crate::study::{Findings, Study};
+use crate::page::{Contents, Page, Plot};
+use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table};
 use glam::DVec3;
 use localshape::sim::Material;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// The study.
@@ -68,18 +67,12 @@ impl Study for Beam {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("beam", results.page())],
-            ..Findings::new(
-                results.text(),
-                [
-                    ("beam", results.table()),
-                    ("beam-elastica", results.elastica_table()),
-                    ("beam-waves", results.waves_table()),
-                ],
-            )
-        })
+        let tables = vec![
+            ("beam", results.table()),
+            ("beam-elastica", results.elastica_table()),
+            ("beam-waves", results.waves_table()),
+        ];
+        Some(Findings { text: results.text(), tables, page: Some(results.page()) })
     }
 }
 
@@ -127,14 +120,8 @@ pub(crate) struct Results {
 /// Measures on the thread pool of the caller; `None` if `watch` stops it.
 pub(crate) fn measure(study: &Beam, watch: &Watch<'_>) -> Option<Results> {
     let bars: Vec<_> = Beam::kinds().flat_map(|kind| study.across.iter().map(move |&across| (kind, across))).collect();
-    let tips = bars.par_iter().map(|&((model, poisson), across)| {
-        let one = watch(0).then(|| tip(model, poisson, across));
-        one.filter(|_| watch(1))
-    });
-    let tips = tips.collect::<Option<_>>()?;
-    let bent = study.bent.par_iter();
-    let bent = bent.map(|model| watch(0).then(|| bend(model, study.along)).filter(|_| watch(1)));
-    let bent = bent.collect::<Option<_>>()?;
+    let tips = each(&bars, watch, |&((model, poisson), across)| tip(model, poisson, across))?;
+    let bent = each(study.bent, watch, |model| bend(model, study.along))?;
     let waves = waves();
     watch(1).then(|| Results { study: study.clone(), tips, bent, waves })
 }
@@ -246,74 +233,23 @@ fn off(
     shapes.map(of_shape).fold(0.0, f64::max)
 }
 
+/// A row of a table: names, then numbers with some decimals.
+fn row_of(names: [&str; 2], numbers: impl Iterator<Item = Option<f64>>, places: usize) -> Vec<Cell> {
+    names.map(Cell::from).into_iter().chain(numbers.map(|number| decimals(number, places))).collect()
+}
+
 /// A number of a material, with its name.
 type Modulus = (&'static str, fn(Material) -> f64);
 
 impl Results {
     /// The results as text.
     fn text(&self) -> String {
-        let mut text = format!(
-            "# Beams\n\n\
-            ## Small deflections\n\n\
-            The deflection of the end of a cantilever over that of Timoshenko's theory: the bar is N cells deep and one wide, {SLENDERNESS} \
-            times as long as deep, and has a small load on its end (ν = 0). A number below 1 means that the bar is too stiff. The rows in \
-            italics are `1/(1 + (3β − 1)/N²)`, which the shape model follows with its factor β of bending. Finite elements of hexahedra \
-            follow it with β = 1/2, and the metric at their corners with β = 3/2. Of the five tetrahedra of a cell only the one in the \
-            middle is regular; the others are no isotropic material to the shape model, so that its bars of tetrahedra converge to another \
-            modulus.\n\n",
-        );
-        text += &self.tips_table(0.0).markdown(2);
-        text += "\nSprings are no material. Their moduli are those that one measures by pulling the same bar; `E` is relative to `k/a`. \
-            Neither is free: both depend on the arrangement of the springs and on the cells across, because springs on the surface have \
-            no neighbours to share with. So do the deflections, which the theory of a uniform material does not describe.\n\n";
-        text += &self.springs_table().markdown(2);
-        text += "\n`xpbd` has the energy of `shape-based`, and bends like it in small steps; [another page](beam-time.md#steps-of-xpbd) measures \
-            what longer ones change.\n\
-            \n## Nearly incompressible bars\n\n\
-            The same for other Poisson's ratios. The clamp lets no section contract, which the theory leaves out and makes bars stiffer by up to \
-            about a percent.\n";
-        for &poisson in &POISSON[1..] {
-            text += &format!("\nν = {poisson}:\n\n{}", self.tips_table(poisson).markdown(2));
-        }
         let lacks = |kind: &str| {
             let of_cells = MODELS.iter().find(|model| model.name == kind);
             let finest = of_cells.and_then(|model| self.of(model, POISSON[2]).last()?.ratio);
             finest.map_or_else(|| "an unknown part".to_owned(), |ratio| format!("{:.0} %", 100.0 * (1.0 - ratio)))
         };
-        text += &format!(
-            "\nAt ν = {} finite elements lock: a cell that bends cannot contract on one side alone, and resists the change of volume at each point \
-            of its integration, at its corners most. With the most cells hexahedra still lack {} of the deflection, and `metric` lacks {}. \
-            The shape model resists the change of the volume of a whole cell, which bending leaves as it is, and lacks {}. That is why a \
-            bar of one cell has β alone to bend with, and β = 1/3 is too soft by 1 + ν there; from two cells on it is right.\n",
-            POISSON[2],
-            lacks("linear"),
-            lacks("metric"),
-            lacks("shape-based"),
-        );
-        text += &format!(
-            "\n## Large deflections\n\n\
-            A bar of {THICK}×{THICK}×{} cells under a load `P` that keeps its direction: the displacement of its end across over its length, \
-            and along in the second table. The elastica is integrated here; the row below has the numbers that Mattiasson printed in 1981. \
-            Springs have the `E` that one measures by pulling the bar.\n",
-            self.study.along
-        );
-        for axis in [0, 1] {
-            text += &format!("\n{}", self.bent_table(axis).markdown(2));
-        }
-        let worst = |model: &Bent| {
-            let errors = model.ends.iter().zip(MATTIASSON).flat_map(|(end, (load, _))| {
-                let exact = elastica(load);
-                [0, 1].map(|axis| end.map_or(f64::NAN, |end| (end[axis] / exact[axis] - 1.0).abs()))
-            });
-            errors.fold(0.0, |most: f64, error| if error <= most { most } else { error })
-        };
-        if let Some(mended) = self.bent.iter().find(|one| one.model.name == MENDED) {
-            text += &format!("\n`{MENDED}` is within {:.1} % of the elastica.\n", 100.0 * worst(mended));
-        }
-        text += "\n## Modes and waves\n\n\
-            Frequencies of the shape model from its forces, beside their closed forms: `m` is the mass of a node, `a` the side of a cube, \
-            `q` the wave number along an axis. The error is the greatest of all modes of columns of 1, 2, 5 and 8 cubes, and of waves with \
-            `qa` from 0.1 to π.\n\n";
+        let with = |&poisson: &f64| format!("ν = {poisson}:\n\n{}", self.tips_table(poisson).markdown(2));
         let row = |wave: &Wave| {
             [
                 ("motion", wave.name.into()),
@@ -322,8 +258,35 @@ impl Results {
                 ("error", format!("{:.0e}", wave.error).into()),
             ]
         };
-        text += &Table::of(self.waves.iter().map(row)).markdown(3);
-        text
+        format!(
+            include_str!("beam.md"),
+            slenderness = SLENDERNESS,
+            small = self.tips_table(0.0).markdown(2),
+            springs = self.springs_table().markdown(2),
+            other_ratios = POISSON[1..].iter().map(with).collect::<Vec<_>>().join("\n\n"),
+            most = POISSON[2],
+            linear = lacks("linear"),
+            metric = lacks("metric"),
+            shapes = lacks("shape-based"),
+            thick = THICK,
+            along = self.study.along,
+            across_length = self.bent_table(0).markdown(2),
+            along_length = self.bent_table(1).markdown(2),
+            mended = MENDED,
+            within =
+                self.farthest_from_elastica().map_or_else(|| "–".to_owned(), |part| format!("{:.1} %", 100.0 * part)),
+            waves = Table::of(self.waves.iter().map(row)).markdown(3),
+        )
+    }
+
+    /// The greatest relative error of the large deflections of [`MENDED`].
+    fn farthest_from_elastica(&self) -> Option<f64> {
+        let mended = self.bent.iter().find(|one| one.model.name == MENDED)?;
+        let errors = mended.ends.iter().zip(MATTIASSON).flat_map(|(end, (load, _))| {
+            let exact = elastica(load);
+            [0, 1].map(|axis| end.map_or(f64::NAN, |end| (end[axis] / exact[axis] - 1.0).abs()))
+        });
+        Some(errors.fold(0.0, |most: f64, error| if error <= most { most } else { error }))
     }
 
     /// The tips of a model with a Poisson's ratio, one for each number of cells.
@@ -332,54 +295,41 @@ impl Results {
     }
 
     fn tips_table(&self, poisson: f64) -> Table {
-        let heads = ["model", "elements"].map(str::to_owned).into_iter();
-        let heads = heads.chain(self.study.across.iter().map(|across| format!("N = {across}"))).collect();
         let models = Beam::kinds().filter(|kind| kind.1 == poisson);
-        let row = |(model, _): (&Model, f64)| {
-            let ratios = self.of(model, poisson).map(|tip| decimals(tip.ratio, 4));
-            model.names(false).into_iter().chain(ratios).collect::<Vec<Cell>>()
-        };
+        let row =
+            |(model, _): (&Model, f64)| model.row(false, self.of(model, poisson).map(|tip| decimals(tip.ratio, 4)));
         let formula = |(name, bending): (&str, f64)| {
-            let ratio =
-                |&across: &u32| decimals(Some(1.0 / (1.0 + (3.0 * bending - 1.0) / f64::from(across * across))), 4);
-            let named: [Cell; 2] = [format!("*{name}*").into(), "".into()];
-            named.into_iter().chain(self.study.across.iter().map(ratio)).collect::<Vec<Cell>>()
+            let ratio = |&across: &u32| 1.0 / (1.0 + (3.0 * bending - 1.0) / f64::from(across * across));
+            row_of([&format!("*formula, β = {name}*"), ""], self.study.across.iter().map(ratio).map(Some), 4)
         };
-        let formulas =
-            [("formula, β = 1", 1.0), ("formula, β = 1/2", 0.5), ("formula, β = 1/3", 1.0 / 3.0)].map(formula);
+        let formulas = [("1", 1.0), ("1/2", 0.5), ("1/3", 1.0 / 3.0)].map(formula);
         let formulas = formulas.into_iter().filter(|_| poisson == 0.0);
-        Table { heads, rows: models.map(row).chain(formulas).collect() }
+        Table::wide(&["model", "elements"], self.columns(), models.map(row).chain(formulas).collect())
+    }
+
+    /// The headings of columns with a number for each number of cells.
+    fn columns(&self) -> impl Iterator<Item = String> {
+        self.study.across.iter().map(|across| format!("N = {across}"))
     }
 
     fn springs_table(&self) -> Table {
-        let heads = ["springs", "modulus"].map(str::to_owned).into_iter();
-        let heads = heads.chain(self.study.across.iter().map(|across| format!("N = {across}"))).collect();
         let springs = MODELS.iter().filter(|model| model.is_springs());
         let row = |(model, (name, of)): (&Model, Modulus)| {
-            let named: [Cell; 2] = [format!("`{}`", model.name).into(), name.into()];
-            named.into_iter().chain(self.of(model, 0.0).map(|tip| decimals(tip.material.map(of), 4))).collect()
+            row_of([&format!("`{}`", model.name), name], self.of(model, 0.0).map(|tip| tip.material.map(of)), 4)
         };
         let moduli: [Modulus; 2] = [("E a/k", |one| 2.0 * one.young / MATERIAL.young), ("ν", |one| one.poisson)];
         let rows = springs.flat_map(|model| moduli.map(|of| (model, of))).map(row).collect();
-        Table { heads, rows }
+        Table::wide(&["springs", "modulus"], self.columns(), rows)
     }
 
     fn bent_table(&self, axis: usize) -> Table {
-        let name = ["w/L", "u/L"][axis];
-        let heads = [name.to_owned(), "elements".to_owned()].into_iter();
-        let heads = heads.chain(MATTIASSON.map(|(load, _)| format!("P L²/EI = {load}"))).collect();
-        let row = |name: String, elements: &str, numbers: Vec<Option<f64>>| -> Vec<Cell> {
-            let named: [Cell; 2] = [name.into(), elements.into()];
-            named.into_iter().chain(numbers.into_iter().map(|number| decimals(number, 5))).collect()
-        };
-        let exact = MATTIASSON.iter().map(|&(load, _)| Some(elastica(load)[axis])).collect();
-        let printed = MATTIASSON.iter().map(|&(_, printed)| printed.map(|printed| printed[axis])).collect();
-        let theory = [row("*elastica*".into(), "", exact), row("*Mattiasson 1981*".into(), "", printed)];
-        let models = self.bent.iter().map(|one| {
-            let ends = one.ends.iter().map(|end| end.map(|end| end[axis])).collect();
-            row(format!("`{}`", one.model.name), one.model.elements.name(false), ends)
-        });
-        Table { heads, rows: theory.into_iter().chain(models).collect() }
+        let exact = MATTIASSON.iter().map(|&(load, _)| Some(elastica(load)[axis]));
+        let printed = MATTIASSON.iter().map(|&(_, printed)| Some(printed?[axis]));
+        let theory = [row_of(["*elastica*", ""], exact, 5), row_of(["*Mattiasson 1981*", ""], printed, 5)];
+        let ends = |one: &Bent| one.model.row(false, one.ends.iter().map(|end| decimals(end.map(|end| end[axis]), 5)));
+        let columns = MATTIASSON.map(|(load, _)| format!("P L²/EI = {load}"));
+        let rows = theory.into_iter().chain(self.bent.iter().map(ends)).collect();
+        Table::wide(&[["w/L", "u/L"][axis], "elements"], columns, rows)
     }
 
     /// All small deflections, with all digits.
@@ -429,39 +379,25 @@ impl Results {
     }
 
     /// The errors of small deflections against the number of cells.
-    #[cfg(feature = "render")]
-    fn page(&self) -> crate::page::Page {
-        use crate::page::{Contents, Line, Page, Plot};
+    fn page(&self) -> Page {
         let plot = |poisson: f64, elements: Elements| {
             let shown = Beam::kinds().filter(|kind| kind.0.elements == elements && kind.1 == poisson);
-            let line = |(model, _): (&Model, f64)| Line {
-                name: model.name.to_owned(),
-                family: model.family(),
-                is_strong: model.name == MENDED,
-                points: self
-                    .of(model, poisson)
-                    .filter_map(|tip| Some([f64::from(tip.across), (tip.ratio? - 1.0).abs()]))
-                    .collect(),
-            };
+            let point = |tip: &Tip| Some([f64::from(tip.across), (tip.ratio? - 1.0).abs()]);
             Plot {
                 name: format!("{}, ν = {poisson}", elements.name(false)),
-                axes: ["cells across, N".to_owned(), "error of the deflection".to_owned()],
-                curves: super::joined(shown.map(line)),
+                axes: ["cells across, N", "error of the deflection"],
+                curves: shown.map(|(model, _)| model.curve(self.of(model, poisson).filter_map(point))).collect(),
                 slopes: None,
             }
         };
+        let plots = [POISSON[0], POISSON[2]].map(|poisson| Elements::ALL.map(|elements| plot(poisson, elements)));
         Page {
             title: "The end of a cantilever: error against cells across".to_owned(),
             caption: vec![format!(
                 "The deflection under a small load, beside Timoshenko's; the bar is {SLENDERNESS} times as long as deep."
             )],
             columns: 2,
-            contents: Contents::Plots(
-                [POISSON[0], POISSON[2]]
-                    .iter()
-                    .flat_map(|&poisson| Elements::ALL.map(|elements| plot(poisson, elements)))
-                    .collect(),
-            ),
+            contents: Contents::Plots(plots.into_iter().flatten().collect()),
         }
     }
 }

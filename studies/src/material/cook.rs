@@ -7,12 +7,11 @@
 use super::balance::balance;
 use super::{Elements, MODELS, Model, decimals};
 use crate::folder::Notes;
-use crate::progress::Watch;
-use crate::study::{Findings, Study};
+use crate::page::{Contents, Page, Plot};
+use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table};
 use glam::DVec3;
 use localshape::sim::{Body, Dimension, Material};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The study.
@@ -52,11 +51,8 @@ impl Study for Cook {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("cook", results.page())],
-            ..Findings::new(results.text(), [("cook", results.table())])
-        })
+        let (text, tables) = (results.text(), vec![("cook", results.table())]);
+        Some(Findings { text, tables, page: Some(results.page()) })
     }
 }
 
@@ -80,11 +76,11 @@ pub(crate) struct Results {
 /// Measures on the thread pool of the caller; `None` if `watch` stops it.
 pub(crate) fn measure(study: &Cook, watch: &Watch<'_>) -> Option<Results> {
     let pairs: Vec<_> = Cook::models().flat_map(|model| study.cells.iter().map(move |&cells| (model, cells))).collect();
-    let deflections = pairs.par_iter().map(|&(model, cells)| {
-        let one = watch(0).then(|| Deflection { model: *model, cells, deflection: deflection(model, cells) });
-        one.filter(|_| watch(1))
-    });
-    Some(Results { study: study.clone(), deflections: deflections.collect::<Option<_>>()? })
+    let deflections = each(&pairs, watch, |&(model, cells)| {
+        let deflection = deflection(model, cells);
+        Deflection { model: *model, cells, deflection }
+    })?;
+    Some(Results { study: study.clone(), deflections })
 }
 
 fn deflection(model: &Model, cells: u32) -> Option<f64> {
@@ -139,33 +135,22 @@ impl Results {
 
     /// The results as text.
     fn text(&self) -> String {
-        let mut text = format!(
-            "# Cook's membrane\n\n\
-            A skew panel in the plane, with corners at (0, 0), (48, 44), (48, 60) and (0, 44), is held at its left side and has a shear load \
-            of 1 along its right one (E = 1, ν = 1/3, thickness 1). The deflection of the middle of the right side is {PRINTED} in the \
-            literature. It is measured with N×N cells. *Limit* is extrapolated from the last three columns.\n\n",
-        );
-        let heads = ["model", "elements"].map(str::to_owned).into_iter();
-        let heads =
-            heads.chain(self.study.cells.iter().map(|cells| format!("N = {cells}"))).chain(["*limit*".to_owned()]);
-        let row = |model: &Model| -> Vec<Cell> {
+        let columns = self.study.cells.iter().map(|cells| format!("N = {cells}")).chain(["*limit*".to_owned()]);
+        let row = |model: &Model| {
             let found = self.of(model).map(|one| one.deflection).chain([self.limit(model)]);
-            model.names(true).into_iter().chain(found.map(|number| decimals(number, 2))).collect()
+            model.row(true, found.map(|number| decimals(number, 2)))
         };
-        text += &Table { heads: heads.collect(), rows: Cook::models().map(row).collect() }.markdown(2);
         let off = |elements: Elements| {
             let shape = MODELS.iter().find(|model| model.elements == elements).and_then(|model| self.limit(model));
             shape.map_or_else(|| "unknown".to_owned(), |limit| format!("{:+.1} %", 100.0 * (limit / PRINTED - 1.0)))
         };
-        text += &format!(
-            "\nFinite elements converge to the literature, and `metric`, with its points of integration at the corners, later. The shape model, \
-            and `xpbd` with it, does not: the cells are skew, their nodes do not spread alike in all \
-            directions, and finer cells are as skew as coarse ones. Such elements are no isotropic material, and their limit is that of another \
-            one: {} from the literature with quadrilaterals, {} with triangles. For the shape model, take cells that are squares or cubes.\n",
-            off(Elements::Cells),
-            off(Elements::Simplices),
-        );
-        text
+        format!(
+            include_str!("cook.md"),
+            printed = PRINTED,
+            table = Table::wide(&["model", "elements"], columns, Cook::models().map(row).collect()).markdown(2),
+            cells = off(Elements::Cells),
+            simplices = off(Elements::Simplices),
+        )
     }
 
     /// All numbers, with all digits.
@@ -182,23 +167,14 @@ impl Results {
     }
 
     /// Errors against the number of cells.
-    #[cfg(feature = "render")]
-    fn page(&self) -> crate::page::Page {
-        use crate::page::{Contents, Line, Page, Plot};
+    fn page(&self) -> Page {
         let plot = |elements: Elements| {
-            let line = |model: &Model| Line {
-                name: model.name.to_owned(),
-                family: model.family(),
-                is_strong: false,
-                points: self
-                    .of(model)
-                    .filter_map(|one| Some([f64::from(one.cells), (one.deflection? / PRINTED - 1.0).abs()]))
-                    .collect(),
-            };
+            let point = |one: &Deflection| Some([f64::from(one.cells), (one.deflection? / PRINTED - 1.0).abs()]);
+            let of_elements = Cook::models().filter(|model| model.elements == elements);
             Plot {
                 name: elements.name(true).to_owned(),
-                axes: ["cells along a side, N".to_owned(), "error of the deflection".to_owned()],
-                curves: super::joined(Cook::models().filter(|model| model.elements == elements).map(line)),
+                axes: ["cells along a side, N", "error of the deflection"],
+                curves: of_elements.map(|model| model.curve(self.of(model).filter_map(point))).collect(),
                 slopes: None,
             }
         };

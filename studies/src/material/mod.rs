@@ -18,7 +18,8 @@ pub(crate) use patch::Patch;
 pub(crate) use time::Time;
 
 use crate::models::{self, Alike};
-use crate::table::Cell;
+use crate::page::Line;
+use crate::table::{Cell, or_dash};
 use glam::DVec3;
 use localshape::scene::Cells;
 use localshape::sim::model::{ElasticModel, shape_based};
@@ -86,21 +87,22 @@ impl Model {
         Self { name, more: Some(more), ..self }
     }
 
-    /// Its name and its elements, for tables.
-    fn names(&self, is_flat: bool) -> [Cell; 2] {
-        [format!("`{}`", self.name).into(), self.elements.name(is_flat).into()]
+    /// A row of a table: its name and its elements, then other cells.
+    fn row(&self, is_flat: bool, cells: impl IntoIterator<Item = Cell>) -> Vec<Cell> {
+        let names: [Cell; 2] = [format!("`{}`", self.name).into(), self.elements.name(is_flat).into()];
+        names.into_iter().chain(cells).collect()
     }
 
-    /// The number of its colour in plots.
-    #[cfg(feature = "render")]
-    fn family(&self) -> usize {
-        match self.kind {
+    /// A curve of a plot.
+    fn curve(&self, points: impl Iterator<Item = [f64; 2]>) -> Line {
+        let family = match self.kind {
             "shape-based" => 0,
             "linear" | "corotational" | "neo-hookean" => 1,
             "metric" => 2,
             "xpbd" => 4,
             _ => 3,
-        }
+        };
+        Line { name: self.name.to_owned(), family, is_strong: self.name == MENDED, points: points.collect() }
     }
 
     /// Whether `E` and `ν` follow from springs and from the body, in place of a material with any of them.
@@ -116,7 +118,6 @@ impl Model {
 }
 
 impl Elements {
-    #[cfg(feature = "render")]
     const ALL: [Self; 2] = [Self::Cells, Self::Simplices];
 
     /// The name of the elements in space and in the plane.
@@ -152,30 +153,5 @@ fn mean_shift(body: &Body, position: &[DVec3], nodes: &[usize]) -> DVec3 {
 
 /// A number with some decimals, or a dash.
 fn decimals(number: Option<f64>, decimals: usize) -> Cell {
-    number.map_or_else(|| "–".to_owned(), |number| format!("{number:.decimals$}")).into()
-}
-
-/// Curves, those that look the same as one, with all their names.
-#[cfg(feature = "render")]
-fn joined(curves: impl IntoIterator<Item = crate::page::Line>) -> Vec<crate::page::Line> {
-    /// Relative to the numbers of a curve: less than a dot on logarithmic axes.
-    const ALIKE: f64 = 0.05;
-    let mut all: Vec<crate::page::Line> = Vec::new();
-    for curve in curves {
-        let is_near = |(one, other): (&[f64; 2], &[f64; 2])| {
-            (0..2).all(|axis| (one[axis] - other[axis]).abs() <= ALIKE * other[axis].abs())
-        };
-        let is_same = |other: &&mut crate::page::Line| {
-            other.points.len() == curve.points.len() && curve.points.iter().zip(&other.points).all(is_near)
-        };
-        match all.iter_mut().find(is_same) {
-            Some(same) => same.name += &format!(", {}", curve.name),
-            None => all.push(curve),
-        }
-    }
-    for one in &mut all {
-        one.name = one.name.replace("linear, corotational, neo-hookean", "finite elements");
-        one.name = one.name.replace("mass-spring, mass-spring, all, limited-springs, volume-springs", "springs");
-    }
-    all
+    or_dash(number.map(|number| format!("{number:.decimals$}")))
 }

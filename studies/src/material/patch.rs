@@ -7,13 +7,11 @@
 use super::balance::{Forces, balance};
 use super::{MODELS, Model};
 use crate::folder::Notes;
-use crate::progress::Watch;
-use crate::study::{Findings, Study};
-use crate::table::{Cell, Table};
+use crate::study::{Findings, Study, Watch, each};
+use crate::table::{Cell, Table, or_dash};
 use glam::{DMat3, DVec3};
 use localshape::sim::geometry::volumes_at_rest;
 use localshape::sim::{Dimension, Material};
-use rayon::prelude::*;
 
 /// The study.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +48,7 @@ impl Study for Patch {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self, watch)?;
-        Some(Findings::new(results.text(), [("patch", results.table())]))
+        Some(Findings { text: results.text(), tables: vec![("patch", results.table())], page: None })
     }
 }
 
@@ -77,11 +75,8 @@ pub(crate) struct Results {
 pub(crate) fn measure(study: &Patch, watch: &Watch<'_>) -> Option<Results> {
     let all = MODELS.iter().flat_map(|model| POISSON.iter().map(move |&poisson| (model, poisson)));
     let all: Vec<_> = all.flat_map(|(model, poisson)| IRREGULAR.map(|irregular| (model, poisson, irregular))).collect();
-    let missed = all.par_iter().map(|&(model, poisson, irregular)| {
-        let one = watch(0).then(|| study.missed(model, poisson, irregular));
-        one.filter(|_| watch(1))
-    });
-    Some(Results { study: study.clone(), missed: missed.collect::<Option<_>>()? })
+    let missed = each(&all, watch, |&(model, poisson, irregular)| study.missed(model, poisson, irregular))?;
+    Some(Results { study: study.clone(), missed })
 }
 
 /// A strain of every kind, of size 1.
@@ -136,35 +131,24 @@ impl Patch {
 impl Results {
     /// The results as text.
     fn text(&self) -> String {
-        let Patch { cells, blocks } = self.study;
-        let mut text = format!(
-            "# Patch test\n\n\
-            A block of {cells}×{cells}×{cells} cells has its nodes disturbed at random, as by `irregular` in scenes. All nodes on its surface are \
-            placed as in a uniform strain of all six components; those inside are free. In a uniform material they follow. The first table \
-            has their RMS distance from the uniform strain, in strains times sides; *0* is round-off. The second has the excess of the \
-            energy over that of the material. Both are means of {blocks} blocks.\n",
-        );
-        for (poisson, of) in POISSON.iter().flat_map(|&poisson| [(poisson, true), (poisson, false)]) {
-            let rows: Vec<_> = MODELS.iter().filter_map(|model| self.row(model, poisson, of)).collect();
-            let what = if of { "Miss" } else { "Energy" };
-            let heads = ["model", "elements"].map(str::to_owned).into_iter();
-            let heads = heads.chain(IRREGULAR.map(|irregular| format!("irregular = {irregular}"))).collect();
-            text += &format!("\n{what}, ν = {poisson}:\n\n{}", Table { heads, rows }.markdown(2));
-        }
         let passes = |model: &&Model| {
             let mut all = self.missed.iter().filter(|one| one.model == **model);
             all.all(|one| one.miss.is_some_and(|miss| miss < ROUND_OFF))
         };
         let name = |model: &Model| format!("`{}` on {}", model.name, model.elements.name(false));
-        let pass: Vec<_> = MODELS.iter().filter(passes).map(name).collect();
-        text += &format!("\nIt is passed by {}; the others fail it.\n", pass.join(", "));
-        text += "\nAn element of the shape model resists as its material only if its nodes spread alike in all directions. A displaced node makes \
-            its elements stiffer along some axes and softer along others, so that their forces do not balance in a uniform strain. Of \
-            tetrahedra only regular ones are such elements, which most are not even on a regular lattice: hence the energy there. Take \
-            regular hexahedra, or finite elements where cells are irregular. The metric at the corners of a cell is exact for \
-            parallelepipeds, and off by little for other cells. Springs pass on a regular lattice, too. `xpbd` has the energy of `shape-based`, \
-            and the same balance.\n";
-        text
+        let passed: Vec<_> = MODELS.iter().filter(passes).map(name).collect();
+        let tables = POISSON.map(|poisson| [true, false].map(|is_miss| self.outcomes(poisson, is_miss)).join("\n\n"));
+        let Patch { cells, blocks } = self.study;
+        let (passed, tables) = (passed.join(", "), tables.join("\n\n"));
+        format!(include_str!("patch.md"), cells = cells, blocks = blocks, tables = tables, passed = passed)
+    }
+
+    /// The misses or the energies of all models, below a heading.
+    fn outcomes(&self, poisson: f64, is_miss: bool) -> String {
+        let rows = MODELS.iter().filter_map(|model| self.row(model, poisson, is_miss)).collect();
+        let table =
+            Table::wide(&["model", "elements"], IRREGULAR.map(|irregular| format!("irregular = {irregular}")), rows);
+        format!("{}, ν = {poisson}:\n\n{}", if is_miss { "Miss" } else { "Energy" }, table.markdown(2))
     }
 
     fn row(&self, model: &Model, poisson: f64, is_miss: bool) -> Option<Vec<Cell>> {
@@ -181,9 +165,9 @@ impl Results {
                 true => format!("{number:.3}"),
                 false => format!("{:+.1} %", 100.0 * number).replace("-0.0", "+0.0"),
             };
-            number.map_or_else(|| "–".to_owned(), shown).into()
+            or_dash(number.map(shown))
         };
-        Some(model.names(false).into_iter().chain(self.missed.iter().filter(is_row).map(cell)).collect())
+        Some(model.row(false, self.missed.iter().filter(is_row).map(cell)))
     }
 
     /// All numbers, with all digits.

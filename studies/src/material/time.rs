@@ -1,15 +1,13 @@
 //! Error against time: one beam with every model and resolution, the error of its end at rest, and the time of a simulated second.
 
 use super::bar::Bar;
-#[cfg(feature = "render")]
-use super::{Elements, MENDED};
-use super::{MODELS, Model, STEPPING};
+use super::{Elements, MENDED, MODELS, Model, STEPPING};
 use crate::folder::Notes;
-use crate::progress::Watch;
+use crate::page::{Contents, Page, Plot};
 use crate::spread::Spread;
-use crate::study::{Findings, Study};
-use crate::table::{Cell, Table, figure};
-use crate::turns::{Clock, kind_of_time, machine, take_turns};
+use crate::study::{Findings, Study, Watch};
+use crate::table::{Cell, Table, figure, or_dash};
+use crate::turns::{kind_of_time, machine, seconds, take_turns};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::stability::Stability;
@@ -65,11 +63,8 @@ impl Study for Time {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("beam-time", results.page())],
-            ..Findings::new(results.text(), [("beam-time", results.table())])
-        })
+        let (text, tables) = (results.text(), vec![("beam-time", results.table())]);
+        Some(Findings { text, tables, page: Some(results.page()) })
     }
 }
 
@@ -123,9 +118,7 @@ pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
     worlds.iter_mut().for_each(|world| world.advance(1));
     let times = take_turns(worlds.len(), study.rounds, watch, |at| {
         let (.., beam) = &beams[at];
-        let clock = Clock::start();
-        worlds[at].advance(steps(beam));
-        clock.seconds() / (steps(beam) as f64 * beam.step)
+        seconds(|| worlds[at].advance(steps(beam))) / (steps(beam) as f64 * beam.step)
     })?;
     let timed = beams.into_iter().zip(times).map(|((model, across, beam), times)| Timed {
         model,
@@ -207,25 +200,28 @@ impl Beam {
 impl Results {
     /// The results as text.
     fn text(&self) -> String {
-        let mut text = format!(
-            "# A beam: error against time\n\n\
-            A cantilever, {SLENDERNESS} times as long as deep and as wide as deep, of N×N×{SLENDERNESS}N cells, bends under a load on its end \
-            with P L²/EI = {LOAD} (ν = 0). The error is that of its deflection at rest, beside {:.4} of the length, which corotational \
-            hexahedra of {} and {} cells across have in the limit. Times are of a simulated second, with half of the largest stable step \
-            and semi-implicit Euler: {} time of one thread on {}, medians of {} turns. The beam is {} mm deep, with E = {} MPa and {DENSITY} \
-            kg/m³. Springs have the stiffness with which the beam, when it is pulled, has this E. `xpbd` has a [step of its \
-            own](#steps-of-xpbd). Other machines give other times.\n\n\
-            ## Which model to take\n\n\
-            The fastest of the runs in the table below for an error that no run of its model with more cells exceeds.\n\n",
-            self.reference,
-            self.study.fine[0],
-            self.study.fine[1],
-            kind_of_time(),
-            machine(),
-            self.study.rounds,
-            1e3 * DEPTH,
-            1e-6 * MATERIAL.young,
-        );
+        format!(
+            include_str!("time.md"),
+            slenderness = SLENDERNESS,
+            load = LOAD,
+            reference = self.reference,
+            coarse = self.study.fine[0],
+            fine = self.study.fine[1],
+            kind_of_time = kind_of_time(),
+            machine = machine(),
+            rounds = self.study.rounds,
+            depth = 1e3 * DEPTH,
+            young = 1e-6 * MATERIAL.young,
+            density = DENSITY,
+            recommended = self.recommended().markdown(2),
+            runs = self.runs().markdown(2),
+            close = 100.0 * CLOSE,
+            steps = self.steps_table().markdown(2),
+        )
+    }
+
+    /// The fastest runs for some errors.
+    fn recommended(&self) -> Table {
         let rows = WANTED.into_iter().filter_map(|wanted| {
             let named =
                 |one: &Timed| format!("`{}`, {}, N = {}", one.model.name, one.model.elements.name(false), one.across);
@@ -233,11 +229,8 @@ impl Results {
                 let good = self.timed.iter().filter(|one| of(one) && self.from(one).all(|finer| finer.error <= wanted));
                 good.min_by(|one, other| one.time.median.total_cmp(&other.time.median))
             };
-            let shown = |one: Option<&Timed>| -> [Cell; 2] {
-                let words = one
-                    .map_or_else(|| ["–".to_owned(), String::new()], |one| [named(one), figure(1e3 * one.time.median)]);
-                words.map(Cell::from)
-            };
+            let shown =
+                |one: Option<&Timed>| [or_dash(one.map(named)), one.map(|one| figure(1e3 * one.time.median)).into()];
             let [best, time] = shown(Some(fastest(&|_| true)?));
             let [elements, of_elements] = shown(fastest(&|one| !one.model.name.starts_with("shape-based")));
             let error = format!("{} %", 100.0 * wanted);
@@ -249,8 +242,10 @@ impl Results {
                 ("ms ", of_elements),
             ])
         });
-        text += &Table::of(rows).markdown(2);
-        text += "\n## All runs\n\n";
+        Table::of(rows)
+    }
+
+    fn runs(&self) -> Table {
         let row = |one: &Timed| {
             [
                 ("model", format!("`{}`", one.model.name).into()),
@@ -262,38 +257,21 @@ impl Results {
                 ("time of 1 s (ms)", figure(1e3 * one.time.median).into()),
             ]
         };
-        text += &Table::of(self.timed.iter().map(row)).markdown(2);
-        text += "\nLinear elements do not turn with the beam: where their error is small, too stiff cells and too small a resistance cancel, and it \
-            grows again with finer cells. Neo-Hookean elements are another material where strains are large: their limit differs a \
-            little. `metric` has its points of integration at the corners of its cells, which bend less and \
-            need shorter steps. Springs are no material, and neither is the shape model on the irregular ones of its tetrahedra: each has a limit of \
-            its own.\n";
-        text += &format!(
-            "\n## Steps of XPBD\n\n\
-            `xpbd` has no largest stable step, and the energy of `shape-based`. In small steps it rests where that does; in longer ones its one \
-            iteration a step leaves it softer, by the part of the deflection in this table. `T` is the shortest period of a node. \
-            Each bar was timed with the first step of its row that leaves less than {} %.\n\n",
-            100.0 * CLOSE
-        );
-        text += &self.steps_table().markdown(2);
-        text
+        Table::of(self.timed.iter().map(row))
     }
 
     /// What longer steps change, of the model that steps itself.
     fn steps_table(&self) -> Table {
         let stepped = || self.timed.iter().filter(|one| !one.softer.is_empty());
         let most = stepped().map(|one| one.softer.len()).max().unwrap_or(0);
-        let heads = (0..most).map(|halved| format!("ΔT = T/{}", f64::from(1 << halved) / LONGEST));
+        let columns = (0..most).map(|halved| format!("ΔT = T/{}", f64::from(1 << halved) / LONGEST));
         let row = |one: &Timed| -> Vec<Cell> {
             let named: [Cell; 2] = [one.model.elements.name(false).into(), one.across.into()];
             let shown =
                 |at: usize| one.softer.get(at).map_or_else(String::new, |softer| format!("{:.1} %", 100.0 * softer));
             named.into_iter().chain((0..most).map(|at| shown(at).into())).collect()
         };
-        Table {
-            heads: ["elements", "N"].map(str::to_owned).into_iter().chain(heads).collect(),
-            rows: stepped().map(row).collect(),
-        }
+        Table::wide(&["elements", "N"], columns, stepped().map(row).collect())
     }
 
     /// A run, and those of its model with more cells.
@@ -321,25 +299,15 @@ impl Results {
     }
 
     /// Errors against times.
-    #[cfg(feature = "render")]
-    fn page(&self) -> crate::page::Page {
-        use crate::page::{Contents, Line, Page, Plot};
+    fn page(&self) -> Page {
         let plot = |name: &str, is_shown: &dyn Fn(&Model) -> bool| {
             let line = |model: &Model| {
                 let of_model = self.timed.iter().filter(|one| one.model == *model);
-                Line {
-                    name: model.name.to_owned(),
-                    family: model.family(),
-                    is_strong: model.name == MENDED,
-                    points: of_model.map(|one| [1e3 * one.time.median, one.error]).collect(),
-                }
+                model.curve(of_model.map(|one| [1e3 * one.time.median, one.error]))
             };
-            Plot {
-                name: name.to_owned(),
-                axes: ["time of a simulated second (ms)".to_owned(), "error of the deflection".to_owned()],
-                curves: Time::models().filter(|model| is_shown(model)).map(line).collect(),
-                slopes: None,
-            }
+            let axes = ["time of a simulated second (ms)", "error of the deflection"];
+            let curves = Time::models().filter(|model| is_shown(model)).map(line).collect();
+            Plot { name: name.to_owned(), axes, curves, slopes: None }
         };
         let is_of_cells = |model: &Model| model.elements == Elements::Cells;
         let is_usual = |model: &Model| matches!(model.kind, "shape-based" | "linear" | "corotational" | "neo-hookean");

@@ -6,11 +6,10 @@ mod plot;
 pub(crate) use map::{Map, Tile};
 pub(crate) use plot::{Line, Plot};
 
-use crate::failure::Failure;
 use image::ImageFormat;
 use localshape::picture::{Diagram, TextStyle};
 use localshape::render::Renderer;
-use localshape::vector;
+use localshape::vector::{self, VectorError};
 use std::io::Cursor;
 
 /// Red, green and blue (sRGB).
@@ -114,18 +113,18 @@ impl Page {
     }
 
     /// The files of the page: SVG, then PNG.
-    pub(crate) fn files(&self) -> Result<[Vec<u8>; 2], Failure> {
+    pub(crate) fn files(&self) -> Result<[Vec<u8>; 2], VectorError> {
         let (diagram, (_, high)) = (self.diagram(), self.areas());
         let page = vector::Page {
             size_mm: Some([WIDE_MM, WIDE_MM * high / WIDE]),
             title: &self.title,
             ..vector::Page::new(diagram.picture())
         };
-        let svg = vector::write(&page, vector::Format::Svg).map_err(|error| Failure::files(error.to_string()))?;
+        let svg = vector::write(&page, vector::Format::Svg)?;
         let size = [WIDE as u32, high as u32];
         let image = Renderer::new(None, size)
             .and_then(|mut renderer| renderer.draw(diagram.picture()))
-            .expect("a page has a size that can be drawn, and no lit bodies");
+            .expect("a size that can be drawn, and no lit bodies");
         let mut png = Cursor::new(Vec::new());
         image.write_to(&mut png, ImageFormat::Png).expect("writing to memory");
         Ok([svg, png.into_inner()])

@@ -9,7 +9,6 @@ mod closed_form;
 mod degenerate;
 mod mueller;
 mod newton;
-#[cfg(feature = "render")]
 mod page;
 mod reference;
 mod sample;
@@ -20,10 +19,9 @@ mod solver_tests;
 mod text;
 
 use crate::folder::Notes;
-use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study};
-use crate::turns::{Clock, take_turns};
+use crate::study::{Findings, Study, Watch};
+use crate::turns::{seconds, take_turns};
 use degenerate::{CLASSES, Outcome};
 use glam::DQuat;
 use sample::{Kind, Sample};
@@ -79,11 +77,8 @@ impl Study for Rotation {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("rotation", results.page())],
-            ..Findings::new(results.text(), [("rotation", results.table())])
-        })
+        let (text, tables) = (results.text(), vec![("rotation", results.table())]);
+        Some(Findings { text, tables, page: Some(results.page()) })
     }
 }
 
@@ -120,11 +115,9 @@ pub(crate) fn measure(protocol: &Rotation, watch: &Watch<'_>) -> Option<Results>
     for kind in protocol.kinds() {
         let (elements, sought): (Vec<_>, Vec<_>) = sample::samples(kind, protocol.elements).into_iter().unzip();
         let turn = |number: usize| {
-            let (work, clock) = (black_box(&solvers[number]).work(), Clock::start());
-            for _ in 0..protocol.repeats {
-                elements.iter().for_each(|element| work(black_box(element)));
-            }
-            clock.seconds() * 1e9 / (f64::from(protocol.repeats) * elements.len() as f64)
+            let work = black_box(&solvers[number]).work();
+            let all = || (0..protocol.repeats).for_each(|_| elements.iter().for_each(|one| work(black_box(one))));
+            seconds(all) * 1e9 / (f64::from(protocol.repeats) * elements.len() as f64)
         };
         // The first turns warm caches and are not counted.
         let _ = (0..solvers.len()).map(turn).sum::<f64>();

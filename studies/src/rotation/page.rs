@@ -13,7 +13,7 @@ impl Results {
         const ROUND_OFF: f64 = 1e-16;
         /// Beyond this increment (rad) most iterations switch to another solver.
         const QUARTER: f64 = 1.6;
-        let error = "worst angle error (rad)".to_owned();
+        let error = "worst angle error (rad)";
         let solvers: Vec<(usize, &Solver)> = self.solvers.iter().enumerate().collect();
         let curve = |solver: &Solver, points: Vec<[f64; 2]>| Line {
             name: solver.name.to_owned(),
@@ -37,14 +37,14 @@ impl Results {
             });
             Plot {
                 name: format!("Elements turned by {increment} rad since the last rotation"),
-                axes: ["time for each element (ns)".to_owned(), error.clone()],
+                axes: ["time for each element (ns)", error],
                 curves: curves.collect(),
                 slopes: None,
             }
         });
         let order = Plot {
             name: "One pass: error against increment".to_owned(),
-            axes: ["increment since the last rotation (rad)".to_owned(), error.clone()],
+            axes: ["increment since the last rotation (rad)", error],
             curves: orders.collect(),
             slopes: Some(([0.9, 1e-8], vec![1.0, 2.0, 3.0, 5.0])),
         };

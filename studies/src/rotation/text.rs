@@ -18,28 +18,21 @@ impl Results {
         let [nearest, other, wrong, none] =
             [Outcome::Nearest, Outcome::Some, Outcome::Wrong, Outcome::NotANumber].map(Outcome::words);
         format!(
-            "# Solvers of rotations: error against time\n\n\
-            Times are {} time of one thread on {}: medians of {} turns of {} elements each, in which all solvers take \
-            turns. Other machines give other times, and much the same ratios. Errors are the greatest angles from the \
-            optimum (rad), which is known to 1e-16; they are the same on every machine. Elements are cubes, stretched along \
-            random axes, and have turned by the increment since their last rotation.\n\n{}\n\
-            ## Error (rad) at strains up to ±{strain}, for increments of so many radians\n\n{}\n\
-            `any` are elements of all shapes, also flat, thin and inverted ones, from any last rotation, with a unique \
-            optimum.\n\n\
-            ## Time (ns for each element), with quartiles in parentheses\n\n{}\n\
-            ## Degenerate elements, from any last rotation\n\n{}\n\
-            `{nearest}`: the optimum, or if there are several, the one nearest to the last rotation; `{other}`: one of \
-            several, but not the nearest; `{wrong}`: a rotation that is not an optimum; `{none}`: not a number. Iterations have \
-            {MANY} passes. `arctangent`, `vector-length`, `symmetric`, `cayley` and `quintic` go over to `davenport` where the \
-            Hessian is not positive definite; the result of `linear-update` is not a rotation, and the nearest one is shown.\n",
-            kind_of_time(),
-            machine(),
-            self.protocol.rounds,
-            self.protocol.elements * self.protocol.repeats as usize,
-            self.about_the_default().unwrap_or_default(),
-            self.by_increment(strain, error).markdown(1),
-            self.by_increment(strain, time).markdown(1),
-            self.robustness().markdown(1),
+            include_str!("text.md"),
+            kind_of_time = kind_of_time(),
+            machine = machine(),
+            rounds = self.protocol.rounds,
+            elements = self.protocol.elements * self.protocol.repeats as usize,
+            default = self.about_the_default().unwrap_or_default(),
+            strain = strain,
+            errors = self.by_increment(strain, error).markdown(1),
+            times = self.by_increment(strain, time).markdown(1),
+            outcomes = self.robustness().markdown(1),
+            nearest = nearest,
+            other = other,
+            wrong = wrong,
+            none = none,
+            many = MANY,
         )
     }
 
@@ -73,23 +66,22 @@ impl Results {
     fn by_increment(&self, strain: f64, cell: impl Fn(&Measured) -> String) -> Table {
         let increments = &self.protocol.increments;
         let kinds = increments.iter().map(|&increment| Kind::Warm { strain, increment }).chain([Kind::Cold]);
-        let heads = ["solver".to_owned()].into_iter().chain(increments.iter().map(f64::to_string));
         let row = |(number, solver): (usize, &Solver)| {
             let of = |kind: Kind| self.measured.iter().find(|one| one.solver == number && one.kind == kind);
             let cells = kinds.clone().map(|kind| of(kind).map(&cell).into());
             [solver.title().into()].into_iter().chain(cells).collect()
         };
-        let rows = self.solvers.iter().enumerate().map(row).collect();
-        Table { heads: heads.chain(["any".to_owned()]).collect(), rows }
+        let columns = increments.iter().map(f64::to_string).chain(["any".to_owned()]);
+        Table::wide(&["solver"], columns, self.solvers.iter().enumerate().map(row).collect())
     }
 
     /// A row for each solver, and a column for each class.
     fn robustness(&self) -> Table {
-        let heads = ["solver"].into_iter().chain(CLASSES.map(|(name, ..)| name)).map(str::to_owned);
         let row = |(name, outcomes): &(&'static str, [Outcome; CLASSES.len()])| {
             [*name].into_iter().chain(outcomes.map(Outcome::words)).map(Cell::from).collect()
         };
-        Table { heads: heads.collect(), rows: self.outcomes.iter().map(row).collect() }
+        let columns = CLASSES.map(|(name, ..)| name.to_owned());
+        Table::wide(&["solver"], columns, self.outcomes.iter().map(row).collect())
     }
 
     /// All numbers, with all digits.

@@ -5,18 +5,16 @@
 //! multiplied initial velocities, and gravity multiplied by the square. Outcomes have the same bits on every machine;
 //! the cells of a map are simulated in parallel.
 
-#[cfg(feature = "render")]
 mod page;
 mod text;
 
 use crate::folder::Notes;
-use crate::progress::Watch;
-use crate::study::{Findings, Study};
+use crate::study::{Findings, Study, Watch, built_in};
+use localshape::Scene;
 use localshape::scene::{Run, description};
 use localshape::sim::model::{ElasticModel, ModelParameters};
 use localshape::sim::stability::Stability as Limit;
 use localshape::sim::{Diagnostic, Status};
-use localshape::{Limits, Scene};
 use rayon::prelude::*;
 use std::sync::Arc;
 use text::short;
@@ -26,7 +24,7 @@ pub(crate) struct Stability {
     pub(crate) protocol: Protocol,
     pub(crate) scene: Scene,
     /// The arguments that repeat it.
-    pub(crate) arguments: String,
+    pub(crate) arguments: Vec<String>,
 }
 
 impl Study for Stability {
@@ -34,8 +32,8 @@ impl Study for Stability {
         "stability"
     }
 
-    fn command(&self) -> String {
-        format!("localshape-study stability{}", self.arguments)
+    fn arguments(&self) -> Vec<String> {
+        self.arguments.clone()
     }
 
     fn digest(&self) -> &str {
@@ -50,11 +48,8 @@ impl Study for Stability {
         let known = |cell: &Cell| Outcome::read(notes.known(&cell.key())?);
         let done = |cell: &Cell| notes.add(&cell.key(), &cell.outcome.note());
         let results = measure(self.protocol.clone(), &self.scene, &known, &done, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("stability", results.page())],
-            ..Findings::new(results.text(), [("stability", results.table())])
-        })
+        let (text, tables) = (results.text(), vec![("stability", results.table())]);
+        Some(Findings { text, tables, page: Some(results.page()) })
     }
 }
 
@@ -126,7 +121,7 @@ pub(crate) fn usual(models: &[String]) -> Scene {
         run = [{}]",
         runs.join(",\n")
     );
-    Scene::parse(&text, "fall", &Limits::default()).unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
+    built_in(&text, "fall")
 }
 
 /// The outcome of a run.

@@ -1,7 +1,7 @@
 //! The results as text and as a table, and the notes of cells.
 
-use super::{Cell, Grid, Outcome, Results};
-use crate::table::{Table, typed};
+use super::{Cell, Grid, Outcome, Protocol, Results};
+use crate::table::{Table, or_dash, typed};
 
 impl Outcome {
     /// In words, as in tables.
@@ -48,20 +48,10 @@ impl Cell {
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
-        let mut text = format!(
-            "# Stability: outcomes of each run\n\n\
-            {}; {} s. The stiffness is multiplied by {} to {}, with the same damping ratio. Steps are shares of the largest one that is \
-            predicted to be stable at rest; of a run that has none, of T/π. `whole`: no element is turned over at the end.\n\n",
-            self.scene.title,
-            self.scene.duration,
-            short(self.protocol.stiffnesses.first().copied().unwrap_or(1.0)),
-            short(self.protocol.stiffnesses.last().copied().unwrap_or(1.0)),
-        );
         let row = |(grid, speed): (&Grid, f64)| {
             let [name, conditions, model] = self.words(grid, speed);
             let up_to =
                 |is_good: fn(Outcome) -> bool| Some(self.up_to(grid, speed, is_good)).filter(|&share| share > 0.0);
-            let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned()).into();
             [
                 ("run", name.into()),
                 ("model", if conditions.is_empty() { model } else { format!("{conditions}, {model}") }.into()),
@@ -71,7 +61,17 @@ impl Results {
                 ("all are whole up to", or_dash(up_to(|outcome| outcome == Outcome::Whole).map(short))),
             ]
         };
-        text += &Table::of(self.maps().map(row)).markdown(2);
+        let Protocol { stiffnesses, .. } = &self.protocol;
+        let [least, most] =
+            [stiffnesses.first(), stiffnesses.last()].map(|factor| short(factor.copied().unwrap_or(1.0)));
+        let mut text = format!(
+            include_str!("text.md"),
+            title = self.scene.title,
+            duration = self.scene.duration,
+            least = least,
+            most = most,
+            table = Table::of(self.maps().map(row)).markdown(2),
+        );
         for run in self.scene.runs.iter().filter(|run| run.tolerance.is_some()) {
             text += &format!("\n{} chooses its own steps and is left out.\n", run.name);
         }

@@ -8,11 +8,9 @@ mod trials;
 
 use crate::folder::Notes;
 use crate::models::Alike;
-use crate::progress::Watch;
-use crate::study::{Findings, Study};
+use crate::study::{Findings, Study, Watch, each};
 use glam::DVec3;
 use localshape::sim::{Integrator, Kernel, State, Status, Stepping, World};
-use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use trials::{Trial, trials};
 
@@ -24,7 +22,7 @@ pub(crate) struct Stress {
     /// The models that are compared.
     pub(crate) models: Vec<Model>,
     /// The arguments that repeat it.
-    pub(crate) arguments: String,
+    pub(crate) arguments: Vec<String>,
 }
 
 /// The usual number of steps.
@@ -35,8 +33,8 @@ impl Study for Stress {
         "stress"
     }
 
-    fn command(&self) -> String {
-        format!("localshape-study stress{}", self.arguments)
+    fn arguments(&self) -> Vec<String> {
+        self.arguments.clone()
     }
 
     fn work(&self) -> u64 {
@@ -45,7 +43,7 @@ impl Study for Stress {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self.steps, &self.models, watch)?;
-        Some(Findings::new(results.text(), [("stress", results.table())]))
+        Some(Findings { text: results.text(), tables: vec![("stress", results.table())], page: None })
     }
 }
 
@@ -144,11 +142,7 @@ const MOST_CREEP: f64 = 1e-3;
 pub(crate) fn measure(steps: u64, models: &[Model], watch: &Watch<'_>) -> Option<Results> {
     let trials = trials(steps);
     let pairs: Vec<_> = trials.iter().flat_map(|trial| models.iter().map(move |model| (trial, model))).collect();
-    let outcome = |&(trial, model): &(&Trial, &Model)| {
-        let outcome = trial.outcome(model);
-        watch(1).then_some(outcome)
-    };
-    let mut outcomes = pairs.par_iter().map(outcome).collect::<Option<Vec<_>>>()?.into_iter();
+    let mut outcomes = each(&pairs, watch, |(trial, model)| trial.outcome(model))?.into_iter();
     let row = |trial: Trial| Row {
         group: trial.group,
         name: trial.name,

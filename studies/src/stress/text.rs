@@ -9,37 +9,27 @@ const RESTORED: f64 = 1e-3;
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
-        let mut text = String::from(
-            "# Stress\n\n\
-            Each body with each model, and the same time step: half of the shape model's limit of stability or less. *Restored*: \
-            no element is turned over, and the nodes are within a thousandth of a side of the shape at rest, RMS. *At rest*: all \
-            heights are those of the static equilibrium within 1 % of a side. *Whole*: stretched by spinning, nothing else. Numbers in \
-            parentheses are RMS distances from the shape at rest, in sides. Springs diverge where so many meet at a node that \
-            this time step is too large for them.\n",
-        );
-        for group in self.rows.chunk_by(|one, other| one.group == other.group) {
-            let words = |row: &Row, one: &Option<Outcome>| match one {
-                Some(outcome) => row.words(outcome).into(),
-                None => Cell::from("does not take it"),
-            };
-            let row = |row: &Row| -> Vec<Cell> {
-                let name = Cell::from(row.name.as_str());
-                [name].into_iter().chain(row.outcomes.iter().map(|one| words(row, one))).collect()
-            };
-            let models = self.models.iter().map(|model| model.name.clone());
-            let heads: Vec<_> = [group[0].group.to_owned()].into_iter().chain(models).collect();
-            let table = Table { rows: group.iter().map(row).collect(), heads };
-            text += &format!("\n{}", table.markdown(table.heads.len()));
-        }
-        let broken: Vec<_> = self.rows.iter().filter(|row| !row.broken().is_empty()).collect();
-        text += match broken.is_empty() {
-            true => "\nThe shape model keeps all its promises.\n",
-            false => "\nPromises that the shape model breaks:\n\n",
+        let words = |row: &Row, one: &Option<Outcome>| match one {
+            Some(outcome) => row.words(outcome).into(),
+            None => Cell::from("does not take it"),
         };
-        for row in broken {
-            text += &format!("- {}, {}: {}\n", row.group, row.name, row.broken().join("; "));
-        }
-        text
+        let row = |row: &Row| -> Vec<Cell> {
+            let name = Cell::from(row.name.as_str());
+            [name].into_iter().chain(row.outcomes.iter().map(|one| words(row, one))).collect()
+        };
+        let table = |group: &[Row]| {
+            let models = self.models.iter().map(|model| model.name.clone());
+            let table = Table::wide(&[group[0].group], models, group.iter().map(row).collect());
+            table.markdown(table.heads.len())
+        };
+        let tables: Vec<_> = self.rows.chunk_by(|one, other| one.group == other.group).map(table).collect();
+        let broken = self.rows.iter().filter(|row| !row.broken().is_empty());
+        let broken = broken.map(|row| format!("- {}, {}: {}", row.group, row.name, row.broken().join("; ")));
+        let promises = match &broken.collect::<Vec<_>>()[..] {
+            [] => "The shape model keeps all its promises.".to_owned(),
+            broken => format!("Promises that the shape model breaks:\n\n{}", broken.join("\n")),
+        };
+        format!(include_str!("text.md"), tables = tables.join("\n\n"), promises = promises)
     }
 
     /// All numbers, with all digits.

@@ -6,19 +6,18 @@
 //! The paper gives neither the orientation of the cube nor the number of starts, and the motion is chaotic: so there
 //! are many starts at rest, with random orientations. The cubes of several starts are simulated together.
 
-#[cfg(feature = "render")]
 mod page;
 mod printed;
 mod text;
 
 use crate::folder::Notes;
-use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study};
+use crate::study::{Findings, Study, Watch, built_in, each};
 use glam::{DVec3, DVec4, Vec4Swizzles};
+use localshape::Scene;
+use localshape::internals::random_unit;
 use localshape::sim::model::Report;
 use localshape::sim::{Assembly, State, Status};
-use localshape::{Limits, Scene};
 use printed::{Printed, ROWS, Row, STIFFNESSES};
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -53,8 +52,8 @@ impl Study for Table1 {
         "table1"
     }
 
-    fn command(&self) -> String {
-        format!("localshape-study table1 --orientations {}", self.orientations)
+    fn arguments(&self) -> Vec<String> {
+        vec!["--orientations".to_owned(), self.orientations.to_string()]
     }
 
     fn work(&self) -> u64 {
@@ -63,14 +62,8 @@ impl Study for Table1 {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("table1", results.page())],
-            ..Findings::new(
-                results.text(),
-                [("table1", results.summary_table()), ("table1-orientations", results.start_table())],
-            )
-        })
+        let tables = vec![("table1", results.summary_table()), ("table1-orientations", results.start_table())];
+        Some(Findings { text: results.text(), tables, page: Some(results.page()) })
     }
 }
 
@@ -144,7 +137,7 @@ impl Orientation {
     /// of four dimensions, as a quaternion.
     pub(crate) fn random(number: u32) -> Self {
         const SEED: u32 = 1;
-        let coordinate = |usage: u64| 2.0 * crate::random::unit(SEED, u64::from(number), usage) - 1.0;
+        let coordinate = |usage: u64| 2.0 * random_unit(SEED, u64::from(number), usage) - 1.0;
         let point = |attempt: u64| DVec4::from_array([0, 1, 2, 3].map(|axis| coordinate(4 * attempt + axis)));
         // Near the centre, directions have few digits.
         let usable = |point: &DVec4| (1e-6..=1.0).contains(&point.length_squared());
@@ -198,8 +191,7 @@ pub(crate) struct Summary {
 pub(crate) fn measure(protocol: &Table1, watch: &Watch<'_>) -> Option<Results> {
     let cases = protocol.cases();
     let orientations: Vec<_> = (0..protocol.orientations).map(Orientation::random).collect();
-    let starts = orientations.par_iter().map(|orientation| watch(0).then(|| start(orientation, &cases)));
-    let starts: Vec<Scene> = starts.collect::<Option<_>>()?;
+    let starts = each(&orientations, &|_| watch(0), |orientation| start(orientation, &cases))?;
     let crowds: Vec<_> = starts.chunks(CROWD).collect();
     // The longest tasks come first, so that no thread is left with one of them at the end.
     let mut tasks: Vec<_> = (0..crowds.len() * cases.len()).collect();
@@ -252,8 +244,7 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
             case.step()
         );
     }
-    Scene::parse(&text, "table1", &Limits::default())
-        .unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
+    built_in(&text, "table1")
 }
 
 /// The cubes of several starts as one body.

@@ -25,7 +25,7 @@ impl Results {
                     line(row.name.to_owned(), true, &|one, _| Some(ours(one).median)),
                 ]
             });
-            let axes = ["k/m (1/s²)", "α (rad/s²)"].map(str::to_owned);
+            let axes = ["k/m (1/s²)", "α (rad/s²)"];
             Plot { name: name.to_owned(), axes, curves: curves.collect(), slopes: None }
         };
         let starts = self.protocol.orientations;

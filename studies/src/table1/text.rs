@@ -3,31 +3,15 @@
 use super::printed::as_printed;
 use super::{Case, Orientation, Results, Statistics, Summary, Table1};
 use crate::spread::Spread;
-use crate::table::{Cell, Table, figure};
+use crate::table::{Cell, Table, figure, or_dash};
 
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
-        let Table1 { orientations, duration, .. } = self.protocol;
-        let plural = if orientations == 1 { "" } else { "s" };
-        let mut text = format!(
-            "# Table 1: evaluation values of approximation errors\n\n\
-            α of Eq. (18) in rad/s², at every evaluation of the forces in the {duration} s from the first contact on, of \
-            a free cube of side 0.1 m with 1 kg in each corner that falls 1 m onto a floor with restitution 1. g = 9.8 \
-            m/s², neither damping nor friction, semi-implicit Euler. μ, σ and max are the mean of α, its standard deviation \
-            and its largest value; k/m is in 1/s². Row A has one pass of the solver at each evaluation and steps of a tenth \
-            of the cycle, row B steps of a hundredth, row C two passes, row D three. The paper does not give the orientation of \
-            its cube; ours are medians over {orientations} start{plural} at rest with random orientation{plural}, for μ \
-            and max with the range in parentheses. A dash in a column of the paper means that the value was below its \
-            measurable range, a dash for passes that the solver has none. Values around 1e-9 and below are round-off.\n\n\
-            ## The paper's solver: Eq. (15), θ = atan |w|, true rotations accumulated, each evaluation starting from \
-            the last\n\n",
-        );
         let summaries = self.summaries();
         let (ours, others): (Vec<_>, Vec<_>) = summaries.iter().partition(|summary| summary.case.printed().is_some());
         let range =
             |spread: Spread| format!("{} ({} – {})", figure(spread.median), figure(spread.least), figure(spread.most));
-        let dash = |printed: Option<f64>| printed.map_or("–".to_owned(), as_printed);
         let ours = ours.into_iter().map(|&Summary { case, mean, deviation, maximum, .. }| {
             let printed = case.row.cases[case.stiffness].1;
             [
@@ -35,28 +19,34 @@ impl Results {
                 ("row", case.row.name.into()),
                 ("passes", case.row.passes.into()),
                 ("ΔT (s)", Cell::Given(case.step())),
-                ("μ, paper", dash(printed.mean).into()),
+                ("μ, paper", or_dash(printed.mean.map(as_printed))),
                 ("μ, here", range(mean).into()),
-                ("σ, paper", dash(printed.deviation).into()),
+                ("σ, paper", or_dash(printed.deviation.map(as_printed))),
                 ("σ, here", figure(deviation.median).into()),
-                ("max, paper", dash(printed.maximum).into()),
+                ("max, paper", or_dash(printed.maximum.map(as_printed))),
                 ("max, here", range(maximum).into()),
             ]
         });
-        text += &Table::of(ours).markdown(2);
-        text += "\n## Exact rotations (`robust`) on the same starts\n\n";
         let others = others.into_iter().map(|&Summary { case, mean, deviation, maximum, .. }| {
             [
                 ("k/m", format!("{:e}", case.stiffness_over_mass()).into()),
                 ("row", case.row.name.into()),
-                ("passes", case.passes().map_or("–".into(), Cell::from)),
+                ("passes", or_dash(case.passes().map(|passes| passes.to_string()))),
                 ("ΔT (s)", Cell::Given(case.step())),
                 ("μ", range(mean).into()),
                 ("σ", figure(deviation.median).into()),
                 ("max", range(maximum).into()),
             ]
         });
-        text += &Table::of(others).markdown(2);
+        let Table1 { orientations, duration, .. } = self.protocol;
+        let mut text = format!(
+            include_str!("text.md"),
+            duration = duration,
+            orientations = orientations,
+            s = if orientations == 1 { "" } else { "s" },
+            printed = Table::of(ours).markdown(2),
+            exact = Table::of(others).markdown(2),
+        );
         let diverged: usize = summaries.iter().map(|summary| summary.diverged).sum();
         if diverged > 0 {
             text += &format!(

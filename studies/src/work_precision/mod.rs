@@ -8,7 +8,6 @@
 
 mod count;
 mod method;
-#[cfg(feature = "render")]
 mod page;
 mod reference;
 mod scenes;
@@ -17,10 +16,9 @@ mod text;
 pub(crate) use scenes::usual;
 
 use crate::folder::Notes;
-use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study};
-use crate::turns::{Clock, take_turns};
+use crate::study::{Findings, Study, Watch};
+use crate::turns::{seconds, take_turns};
 use count::Counting;
 use localshape::Scene;
 use localshape::scene::description;
@@ -36,7 +34,7 @@ pub(crate) struct WorkPrecision {
     /// The runs that are measured.
     pub(crate) subjects: Vec<Subject>,
     /// The arguments that repeat it.
-    pub(crate) arguments: String,
+    pub(crate) arguments: Vec<String>,
 }
 
 /// The amount of measurement.
@@ -62,8 +60,8 @@ impl Study for WorkPrecision {
         "work-precision"
     }
 
-    fn command(&self) -> String {
-        format!("localshape-study work-precision{}", self.arguments)
+    fn arguments(&self) -> Vec<String> {
+        self.arguments.clone()
     }
 
     /// The number of turns if nothing diverges, and one more for each way to advance a run.
@@ -73,11 +71,8 @@ impl Study for WorkPrecision {
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
         let results = measure(self.effort, &self.subjects, watch)?;
-        Some(Findings {
-            #[cfg(feature = "render")]
-            pages: vec![("work-precision", results.page())],
-            ..Findings::new(results.text(), [("work-precision", results.table())])
-        })
+        let (text, tables) = (results.text(), vec![("work-precision", results.table())]);
+        Some(Findings { text, tables, page: Some(results.page()) })
     }
 }
 
@@ -227,9 +222,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
     let times = take_turns(timed.len(), effort.rounds, watch, |turn| {
         let (_, attempt, model) = &timed[turn];
         let mut world = attempt.world(subject, Arc::clone(model));
-        let clock = Clock::start();
-        world.advance(attempt.steps);
-        clock.seconds()
+        seconds(|| world.advance(attempt.steps))
     })?;
     timed.iter().zip(times).for_each(|(&(at, ..), times)| found.measured[at].time = Spread::of(times));
     Some(found)
@@ -240,9 +233,7 @@ fn seconds_per_evaluation(subject: &Subject, model: &Arc<dyn ElasticModel>) -> f
     let attempt = Attempt { steps: 1 << 20, ..Attempt::new(Method::DEFAULT, 1.0, reference::TOLERANCE) };
     let mut world = attempt.world(subject, Arc::new(Counting::new(Arc::clone(model), u64::MAX)));
     world.advance(1);
-    let clock = Clock::start();
-    world.advance(100);
-    (clock.seconds() / 100.0).max(1e-9)
+    (seconds(|| world.advance(100)) / 100.0).max(1e-9)
 }
 
 /// The cost of an error with a method.

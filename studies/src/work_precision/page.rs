@@ -13,7 +13,7 @@ impl Results {
     /// For each run errors against evaluations and against time.
     pub(super) fn page(&self) -> Page {
         let of = |comparison: &Comparison| {
-            let plot = |name: &str, axis: &str, across: fn(&Measured) -> f64, slopes| {
+            let plot = |name: &str, axis: &'static str, across: fn(&Measured) -> f64, slopes| {
                 let line = |method: Method| {
                     let points = comparison.of(method).filter_map(|one| {
                         let error = one.error.filter(|&error| error < 1.0)?;
@@ -23,7 +23,7 @@ impl Results {
                     let (family, is_strong) = (method.family(), method == Method::DEFAULT);
                     Line { name, family, is_strong, points: points.collect() }
                 };
-                let axes = [axis.to_owned(), ERROR.to_owned()];
+                let axes = [axis, ERROR];
                 Plot { name: name.to_owned(), axes, curves: comparison.methods().map(line).collect(), slopes }
             };
             let slopes = Some(([8e3, 0.5], vec![-1.0, -2.0, -4.0]));

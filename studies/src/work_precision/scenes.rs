@@ -2,8 +2,8 @@
 
 use super::Subject;
 use crate::models::Alike;
+use crate::study::built_in;
 use glam::DVec3;
-use localshape::{Limits, Scene};
 
 /// A free body that is twisted and stretched, one that falls onto a floor, and one in the plane with damping: with these models, or the
 /// shape-based one.
@@ -62,8 +62,7 @@ fn with(kind: &str, suffix: &str) -> Vec<Subject> {
 
 /// A scene, deformed at its start about the middle of its body.
 fn subject(name: String, text: &str, deform: Option<&dyn Fn(DVec3) -> DVec3>) -> Subject {
-    let mut scene = Scene::parse(text, "study", &Limits::default())
-        .unwrap_or_else(|error| panic!("a scene without mistakes: {error}"));
+    let mut scene = built_in(text, "study");
     if let Some(deform) = deform {
         let position = &mut scene.runs[0].initial.position;
         let middle = position.iter().sum::<DVec3>() / position.len() as f64;

@@ -2,7 +2,7 @@
 
 use super::method::{End, MOMENTS, Method};
 use super::{Comparison, Cost, Measured, Results};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, or_dash};
 use crate::turns::{kind_of_time, machine};
 
 /// The errors for which a method is recommended.
@@ -11,19 +11,15 @@ const WANTED: [f64; 7] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9];
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
-        let mut text = format!(
-            "# Integrators: error against work\n\n\
-            Errors are the greatest distances of nodes from the reference at any of {MOMENTS} moments, as shares of the body's size; \
-            a run of fewer steps is compared after each of them. Rotations are those of `robust`, if no reading is named. \
-            Evaluations of the forces include those of the start. Times are {} time of one thread on {}: medians of {} turn{} in \
-            which all runs take turns. Other machines give other times.\n",
-            kind_of_time(),
-            machine(),
-            self.effort.rounds,
-            if self.effort.rounds == 1 { "" } else { "s" },
+        let head = format!(
+            include_str!("text.md"),
+            moments = MOMENTS,
+            kind_of_time = kind_of_time(),
+            machine = machine(),
+            rounds = self.effort.rounds,
+            s = if self.effort.rounds == 1 { "" } else { "s" },
         );
-        self.comparisons.iter().for_each(|one| text += &one.text());
-        text
+        [head].into_iter().chain(self.comparisons.iter().map(Comparison::text)).collect()
     }
 
     /// All runs, with all digits.
@@ -63,10 +59,11 @@ impl Comparison {
                     " The reference is by {one} and {other} with small steps, which are at most {:.0e} of the body's size apart.\n",
                     reference.error
                 );
-                text += "\n### Recommended\n\n";
-                text += &self.recommendations().markdown(1);
-                text += "\n### Orders, and the least errors\n\n";
-                text += &self.orders().markdown(1);
+                text += &format!(
+                    "\n### Recommended\n\n{}\n\n### Orders, and the least errors\n\n{}\n",
+                    self.recommendations().markdown(1),
+                    self.orders().markdown(1)
+                );
             }
             Err(why) => text += &format!("\n\n{why}.\n"),
         }
@@ -131,10 +128,6 @@ impl End {
             Self::GivenUp => "given up",
         }
     }
-}
-
-fn or_dash(text: Option<String>) -> Cell {
-    text.unwrap_or_else(|| "–".to_owned()).into()
 }
 
 /// A number with two or three digits.

@@ -3,7 +3,7 @@
 use super::*;
 
 fn folder(path: &Path, command: &str) -> Result<Folder, Failure> {
-    Folder::new(path.to_owned(), "study", command, false)
+    Folder::new(path.to_owned(), "study", &format!("localshape-study {command}"), false)
 }
 
 #[test]

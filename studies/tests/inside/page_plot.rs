@@ -7,58 +7,54 @@ fn plots(points: Vec<[f64; 2]>) -> Vec<Plot> {
     let curve = |name: &str, points| Line { name: name.to_owned(), family: 0, is_strong: false, points };
     let plot = |points: &Vec<[f64; 2]>| Plot {
         name: "plot".to_owned(),
-        axes: ["time (ns)".to_owned(), "error (rad)".to_owned()],
+        axes: ["time (ns)", "error (rad)"],
         curves: vec![curve("one", points.clone()), curve("two", points.clone())],
         slopes: Some(([1e4, 1e-4], vec![2.0, 5.0])),
     };
     vec![plot(&points), plot(&vec![[3e5, 1e-3]])]
 }
 
-/// The frames of these plots beside each other.
-fn frames(plots: &[Plot]) -> Vec<Frame> {
-    let area = |number: usize| [100.0 + 600.0 * number as f64, 100.0, 600.0 + 600.0 * number as f64, 500.0];
-    let ranges = |plot: &Plot| [0, 1].map(|axis| range(plots, axis, &plot.axes[axis]));
-    plots.iter().enumerate().map(|(at, plot)| Frame::new(plot, area(at), ranges(plot))).collect()
+const AREA: Area = [100.0, 100.0, 600.0, 500.0];
+
+/// The charts of these plots.
+fn charts(plots: &[Plot]) -> Vec<Chart> {
+    let ranges = |plot: &Plot| [0, 1].map(|axis| range(plots, axis, plot.axes[axis]));
+    plots.iter().map(|plot| plot.chart(AREA, ranges(plot))).collect()
+}
+
+/// The dots of a chart's curves (px).
+fn dots(chart: &Chart) -> Vec<[f64; 2]> {
+    let points = chart.layers.iter().filter_map(|layer| match layer {
+        Layer::Dots { points, .. } => Some(points),
+        _ => None,
+    });
+    points.flatten().map(|&point| chart.at(AREA, point)).collect()
 }
 
 #[test]
 fn a_decade_is_equally_long_everywhere_and_plots_share_their_axes() {
     let plots = plots(vec![[1.0, 1e-12], [10.0, 1e-9], [100.0, 1e-6]]);
-    let frames = frames(&plots);
-    // The first two lines are slopes.
-    let dots = &frames[0].lines[2].points;
-    assert!((dots[1][0] - dots[0][0] - (dots[2][0] - dots[1][0])).abs() < 1e-9);
-    assert!((dots[1][1] - dots[0][1] - (dots[2][1] - dots[1][1])).abs() < 1e-9 && dots[1][1] < dots[0][1]);
+    let charts = charts(&plots);
+    let [one, other] = [0, 1].map(|at| dots(&charts[at]));
+    assert!((one[1][0] - one[0][0] - (one[2][0] - one[1][0])).abs() < 1e-9);
+    assert!((one[1][1] - one[0][1] - (one[2][1] - one[1][1])).abs() < 1e-9 && one[1][1] < one[0][1]);
     // 3e5 is outside the range of the first plot, and widens it.
-    assert!(dots[2][0] < 400.0 && frames[1].lines[2].points[0][0] > 1100.0);
-    assert_eq!([&frames[0].chart.x, &frames[0].chart.y], [&frames[1].chart.x, &frames[1].chart.y]);
-}
-
-#[test]
-fn names_do_not_cover_each_other() {
-    let plots = plots(vec![[1.0, 1e-12], [10.0, 1e-9], [100.0, 1e-6]]);
-    for frame in frames(&plots) {
-        let names = frame.names(&Diagram::new([1280, 600]));
-        let names: Vec<Area> = names.into_iter().flatten().map(|place| place.area).collect();
-        // Two curves and two slopes.
-        assert_eq!(names.len(), 4);
-        for (at, one) in names.iter().enumerate() {
-            assert!(names[..at].iter().all(|&other| shared(*one, other) == 0.0), "{names:?}");
-            let [left, top, right, bottom] = frame.area;
-            assert!(one[0] >= left && one[1] >= top && one[2] <= right && one[3] <= bottom, "{names:?}");
-        }
-    }
+    assert!(one[2][0] < 400.0 && other[0][0] > 500.0);
+    assert_eq!([&charts[0].x, &charts[0].y], [&charts[1].x, &charts[1].y]);
+    let names = |chart: &Chart| match &chart.annotations[..] {
+        [Annotation::Names { names, .. }] => names.len(),
+        _ => 0,
+    };
+    assert_eq!(charts.iter().map(names).collect::<Vec<_>>(), [2, 2]);
 }
 
 #[test]
 fn all_is_on_the_page_whatever_the_numbers() {
     for points in [vec![], vec![[0.0, -1.0]], vec![[f64::NAN, 1.0]], vec![[1e-300, f64::INFINITY]], vec![[2.0; 2]]] {
         let plots = plots(points);
-        for frame in frames(&plots) {
-            let [left, top, right, bottom] = frame.area;
-            for &[x, y] in frame.lines.iter().flat_map(|line| &line.points) {
-                assert!((left..=right).contains(&x) && (top..=bottom).contains(&y), "{x} {y}");
-            }
+        for [x, y] in charts(&plots).iter().flat_map(dots) {
+            let [left, top, right, bottom] = AREA;
+            assert!((left..=right).contains(&x) && (top..=bottom).contains(&y), "{x} {y}");
         }
         let (title, caption) = ("Title".to_owned(), vec!["Words".to_owned()]);
         let page = Page { title, caption, columns: 2, contents: Contents::Plots(plots) };

@@ -12,7 +12,7 @@ fn small() -> (Protocol, Scene) {
             { name = 'springs', integrator = 'backward-euler', model = { kind = 'mass-spring', stiffness = 1e4 } },
             { name = 'own', integrator = 'dormand-prince', tolerance = 1e-6, model = { kind = 'shape-based', stiffness = 1 } },
         ]";
-    let scene = Scene::parse(text, "small", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let scene = built_in(text, "small");
     (
         Protocol { stiffnesses: vec![0.25, 4.0], shares: vec![0.3, 0.9, 1.1], speeds: vec![1.0], dampings: vec![1.0] },
         scene,
@@ -103,7 +103,7 @@ fn faster_impacts_have_more_gravity() {
         )
     };
     let outcomes = |gravity: f64, speed: f64| {
-        let scene = Scene::parse(&text(gravity), "fall", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let scene = built_in(&text(gravity), "fall");
         let stiffnesses = vec![1.0, 2.0, 4.0, 8.0];
         let protocol = Protocol { stiffnesses, shares: vec![0.3], speeds: vec![speed], dampings: vec![1.0] };
         let results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");

@@ -6,7 +6,7 @@ use super::*;
 fn all_forms_can_be_read_again() {
     let table = Table::of([[("name", "a, \"b\"".into()), ("|w|", Cell::Given(1.5)), ("none", Cell::Empty)]]);
     assert_eq!(table.csv(), "name,|w|,none\n\"a, \"\"b\"\"\",1.5,\n");
-    assert_eq!(table.markdown(1), "| name | \\|w\\| | none |\n| --- | ---: | ---: |\n| a, \"b\" | 1.5 |  |\n");
+    assert_eq!(table.markdown(1), "| name | \\|w\\| | none |\n| --- | ---: | ---: |\n| a, \"b\" | 1.5 |  |");
     assert_eq!(table.json(), json!([{ "name": "a, \"b\"", "|w|": 1.5, "none": null }]));
 }
 

@@ -64,7 +64,7 @@ fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {
             run = [{{ name = 'exact', kernel = 'reference', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]",
             axis.x, axis.y, axis.z
         );
-        let scene = Scene::parse(&text, "energy", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let scene = built_in(&text, "energy");
         let energy = |world: &World| world.diagnostics().energy;
         let mut world = scene.world(0);
         let before = energy(&world);
