@@ -35,7 +35,7 @@ use stability::{Protocol, Stability};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use stress::Stress;
-use study::{Options, Study};
+use study::{Options, Study, Task};
 use table1::Table1;
 use work_precision::{Effort, Subject, WorkPrecision};
 
@@ -151,16 +151,16 @@ struct OfScene {
     full: bool,
 }
 
-/// The arguments that name models.
-fn of_models(models: &[String]) -> Vec<String> {
-    models.iter().flat_map(|model| ["--model".to_owned(), model.clone()]).collect()
+/// The arguments that give an option these values.
+fn repeated(option: &str, values: &[String]) -> Vec<String> {
+    values.iter().flat_map(|value| [option.to_owned(), value.clone()]).collect()
 }
 
 impl OfScene {
     /// The arguments that repeat it.
     fn arguments(&self) -> Vec<String> {
         let scene = self.scene.iter().map(|path| path.to_string_lossy().into_owned());
-        scene.chain(of_models(&self.model)).chain(self.full.then(|| "--full".to_owned())).collect()
+        scene.chain(repeated("--model", &self.model)).chain(self.full.then(|| "--full".to_owned())).collect()
     }
 
     fn load(&self) -> Result<Option<Scene>, Failure> {
@@ -185,33 +185,23 @@ impl OfScene {
 }
 
 impl Name {
-    fn threads(&self) -> usize {
-        match self {
-            Self::Rotation | Self::WorkPrecision { .. } | Self::BeamTime => 1,
-            Self::Stability { threads, .. }
-            | Self::Stress { threads, .. }
-            | Self::Beam { threads }
-            | Self::Patch { threads }
-            | Self::Cook { threads }
-            | Self::Table1 { threads, .. } => threads.count(),
-            Self::Ratio { threads } => (*threads).into(),
-        }
-    }
-
-    fn study(self) -> Result<Box<dyn Study>, Failure> {
+    /// The study, with its number of threads and the arguments that repeat it.
+    fn task(self) -> Result<Task, Failure> {
+        let task = |study: Box<dyn Study>, threads: usize, arguments: Vec<String>| Task { study, threads, arguments };
         Ok(match self {
-            Self::Rotation => Box::new(Rotation::default()),
+            Self::Rotation => task(Box::new(Rotation::usual()), 1, Vec::new()),
             Self::WorkPrecision { only, of } => {
-                let mut arguments = of.arguments();
-                arguments.extend(only.iter().flat_map(|run| ["--only".to_owned(), run.clone()]));
                 let effort = if of.full { Effort::FULL } else { Effort::USUAL };
                 let subjects =
                     of.load()?.map_or_else(|| Ok(work_precision::usual(&of.model)), |scene| subjects(&scene, &only))?;
-                Box::new(WorkPrecision { effort, subjects, arguments })
+                task(
+                    Box::new(WorkPrecision { effort, subjects }),
+                    1,
+                    [of.arguments(), repeated("--only", &only)].concat(),
+                )
             }
-            Self::Stability { of, .. } => {
+            Self::Stability { of, threads } => {
                 let study = Stability {
-                    arguments: of.arguments(),
                     protocol: if of.full { Protocol::full() } else { Protocol::usual() },
                     scene: of.load()?.unwrap_or_else(|| stability::usual(&of.model)),
                 };
@@ -221,18 +211,24 @@ impl Name {
                         study.scene.title
                     )));
                 }
-                Box::new(study)
+                task(Box::new(study), threads.count(), of.arguments())
             }
-            Self::Stress { model, .. } => {
-                let (arguments, models) = (of_models(&model), stress::Model::compared(&model));
-                Box::new(Stress { steps: stress::STEPS, models, arguments })
+            Self::Stress { model, threads } => {
+                let study = Stress { steps: stress::STEPS, models: stress::Model::compared(&model) };
+                task(Box::new(study), threads.count(), repeated("--model", &model))
             }
-            Self::Beam { .. } => Box::new(Beam::usual()),
-            Self::Patch { .. } => Box::new(Patch::usual()),
-            Self::Cook { .. } => Box::new(Cook::usual()),
-            Self::BeamTime => Box::new(Time::usual()),
-            Self::Table1 { orientations, .. } => Box::new(Table1::new(orientations)),
-            Self::Ratio { threads } => Box::new(Ratio::new(threads.into())),
+            Self::Beam { threads } => task(Box::new(Beam::usual()), threads.count(), Vec::new()),
+            Self::Patch { threads } => task(Box::new(Patch::usual()), threads.count(), Vec::new()),
+            Self::Cook { threads } => task(Box::new(Cook::usual()), threads.count(), Vec::new()),
+            Self::BeamTime => task(Box::new(Time::usual()), 1, Vec::new()),
+            Self::Table1 { orientations, threads } => {
+                let arguments = repeated("--orientations", &[orientations.to_string()]);
+                task(Box::new(Table1::new(orientations)), threads.count(), arguments)
+            }
+            Self::Ratio { threads } => {
+                let given = Some(threads.to_string()).filter(|_| threads != 1);
+                task(Box::new(Ratio::new(threads.into())), threads.into(), repeated("--threads", given.as_slice()))
+            }
         })
     }
 }
@@ -260,6 +256,5 @@ fn subjects(scene: &Scene, only: &[String]) -> Result<Vec<Subject>, Failure> {
 
 fn main() -> ExitCode {
     let Cli { name, options } = Cli::parse();
-    let threads = name.threads();
-    name.study().and_then(|study| study::make(study.as_ref(), threads, &options)).unwrap_or_else(Failure::report).into()
+    name.task().and_then(|task| study::make(&task, &options)).unwrap_or_else(Failure::report).into()
 }

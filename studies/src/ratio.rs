@@ -51,10 +51,6 @@ impl Study for Ratio {
         "ratio"
     }
 
-    fn arguments(&self) -> Vec<String> {
-        if self.threads == 1 { Vec::new() } else { vec!["--threads".to_owned(), self.threads.to_string()] }
-    }
-
     fn work(&self) -> u64 {
         self.sides.len() as u64 * u64::from(self.rounds) * (1 + SPRINGS.len() as u64)
     }

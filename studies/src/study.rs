@@ -20,11 +20,6 @@ pub(crate) trait Study: Send + Sync {
     /// Its name, and that of its folder and files.
     fn name(&self) -> &'static str;
 
-    /// The arguments of the command that repeats it.
-    fn arguments(&self) -> Vec<String> {
-        Vec::new()
-    }
-
     /// The digest of the study's parameters besides the command. Notes of an interrupted study depend on it.
     fn digest(&self) -> &str {
         ""
@@ -36,6 +31,14 @@ pub(crate) trait Study: Send + Sync {
     /// Measures, with the caller's thread pool (rayon); `None` if `watch` stops it. Notes are kept until the study is
     /// done.
     fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings>;
+}
+
+/// A study, and how it is made.
+pub(crate) struct Task {
+    pub(crate) study: Box<dyn Study>,
+    pub(crate) threads: usize,
+    /// The arguments of the command that repeats it.
+    pub(crate) arguments: Vec<String>,
 }
 
 /// The findings of a study.
@@ -83,16 +86,15 @@ pub(crate) struct Options {
     pub(crate) json: bool,
 }
 
-/// Makes a study: measures with a number of threads, writes its files, and prints its text.
-pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Result<Status, Failure> {
+/// Makes a study: measures, writes its files, and prints its text.
+pub(crate) fn make(Task { study, threads, arguments }: &Task, options: &Options) -> Result<Status, Failure> {
     let name = study.name();
-    let words = ["localshape-study", name].map(str::to_owned).into_iter().chain(study.arguments());
-    let command = command_line(&words.collect::<Vec<_>>());
+    let command = command_line(&[&["localshape-study", name].map(str::to_owned), &arguments[..]].concat());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     listen();
     let folder = Folder::new(path, name, &command, options.overwrite)?;
     let notes = folder.notes(study.digest());
-    let Some(found) = measured(study, threads, options.quiet, &notes)? else {
+    let Some(found) = measured(study.as_ref(), *threads, options.quiet, &notes)? else {
         if !options.quiet && !options.json {
             let goes_on = if notes.are_kept() { "; the same command continues from here" } else { "" };
             print(&format!("interrupted; {name} was not made{goes_on}\n"))?;

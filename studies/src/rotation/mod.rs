@@ -46,8 +46,8 @@ pub(crate) struct Rotation {
     pub(crate) rounds: u32,
 }
 
-impl Default for Rotation {
-    fn default() -> Self {
+impl Rotation {
+    pub(crate) fn usual() -> Self {
         Self {
             strains: vec![0.0, 0.1, 0.5, 0.9, 1.0, 1.5],
             increments: vec![1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0],
@@ -56,9 +56,7 @@ impl Default for Rotation {
             rounds: 15,
         }
     }
-}
 
-impl Rotation {
     /// The kinds of elements.
     fn kinds(&self) -> Vec<Kind> {
         let of = |&strain| self.increments.iter().map(move |&increment| Kind::Warm { strain, increment });

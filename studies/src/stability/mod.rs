@@ -23,17 +23,11 @@ use text::short;
 pub(crate) struct Stability {
     pub(crate) protocol: Protocol,
     pub(crate) scene: Scene,
-    /// The arguments that repeat it.
-    pub(crate) arguments: Vec<String>,
 }
 
 impl Study for Stability {
     fn name(&self) -> &'static str {
         "stability"
-    }
-
-    fn arguments(&self) -> Vec<String> {
-        self.arguments.clone()
     }
 
     fn digest(&self) -> &str {

@@ -21,8 +21,6 @@ pub(crate) struct Stress {
     pub(crate) steps: u64,
     /// The models that are compared.
     pub(crate) models: Vec<Model>,
-    /// The arguments that repeat it.
-    pub(crate) arguments: Vec<String>,
 }
 
 /// The usual number of steps.
@@ -31,10 +29,6 @@ pub(crate) const STEPS: u64 = 1_000_000;
 impl Study for Stress {
     fn name(&self) -> &'static str {
         "stress"
-    }
-
-    fn arguments(&self) -> Vec<String> {
-        self.arguments.clone()
     }
 
     fn work(&self) -> u64 {

@@ -52,10 +52,6 @@ impl Study for Table1 {
         "table1"
     }
 
-    fn arguments(&self) -> Vec<String> {
-        vec!["--orientations".to_owned(), self.orientations.to_string()]
-    }
-
     fn work(&self) -> u64 {
         u64::from(self.orientations) * self.cases().iter().map(|case| self.evaluations(case)).sum::<u64>()
     }

@@ -2,7 +2,7 @@
 
 use super::Subject;
 use super::count::Counting;
-use crate::methods::{BLANES_MOAN, FOREST_RUTH, KAHAN_LI};
+use crate::methods;
 use crate::table::typed;
 use glam::DVec3;
 use localshape::sim::integrate::{ByComposition, Composition};
@@ -12,18 +12,14 @@ use localshape::sim::{Body, Integrator, Kernel, Status, World};
 use std::sync::Arc;
 
 /// An integrator, with a solver of rotations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
     /// An integrator of scenes.
     Scene(Integrator),
     /// Velocity Verlet with a reading of the paper for rotations.
     Reading(RotationReading),
-    /// Forest–Ruth: of fourth order and symplectic, with three evaluations a step.
-    ForestRuth,
-    /// The Runge–Kutta–Nyström method of Blanes and Moan: of sixth order and symplectic, with 14 evaluations a step.
-    BlanesMoan,
-    /// Kahan–Li: of eighth order and symplectic, with 17 evaluations a step.
-    KahanLi,
+    /// A symplectic composition that scenes do not offer, by its name.
+    Composed(&'static str, Composition),
 }
 
 impl Method {
@@ -32,6 +28,10 @@ impl Method {
     pub(crate) const VERLET: Self = Self::Scene(Integrator::VelocityVerlet);
     pub(crate) const PEFRL: Self = Self::Scene(Integrator::Pefrl);
     pub(crate) const DORMAND_PRINCE: Self = Self::Scene(Integrator::DormandPrince);
+    /// Of fourth, of sixth and of eighth order.
+    pub(crate) const FOREST_RUTH: Self = Self::Composed("forest-ruth", methods::FOREST_RUTH);
+    pub(crate) const BLANES_MOAN: Self = Self::Composed("blanes-moan", methods::BLANES_MOAN);
+    pub(crate) const KAHAN_LI: Self = Self::Composed("kahan-li", methods::KAHAN_LI);
 
     /// All methods.
     pub(crate) const ALL: [Self; 13] = [
@@ -42,11 +42,11 @@ impl Method {
         Self::Reading(RotationReading::Arctangent),
         Self::Reading(RotationReading::VectorLength),
         Self::Reading(RotationReading::LinearUpdate),
-        Self::ForestRuth,
+        Self::FOREST_RUTH,
         Self::Scene(Integrator::RungeKutta),
         Self::PEFRL,
-        Self::BlanesMoan,
-        Self::KahanLi,
+        Self::BLANES_MOAN,
+        Self::KAHAN_LI,
         Self::DORMAND_PRINCE,
     ];
 
@@ -56,9 +56,7 @@ impl Method {
         let (integrator, rotation) = match self {
             Self::Scene(integrator) => (typed(&integrator), String::new()),
             Self::Reading(rotation) => (typed(&Integrator::VelocityVerlet), typed(&rotation)),
-            Self::ForestRuth => ("forest-ruth".to_owned(), String::new()),
-            Self::BlanesMoan => ("blanes-moan".to_owned(), String::new()),
-            Self::KahanLi => ("kahan-li".to_owned(), String::new()),
+            Self::Composed(name, _) => (name.to_owned(), String::new()),
         };
         [integrator, rotation]
     }
@@ -76,9 +74,7 @@ impl Method {
             Self::Scene(Integrator::DormandPrince) => 6.0,
             Self::Scene(Integrator::BackwardEuler) => 40.0,
             Self::Scene(_) | Self::Reading(_) => 1.0,
-            Self::ForestRuth => 3.0,
-            Self::BlanesMoan => 14.0,
-            Self::KahanLi => 17.0,
+            Self::Composed(_, composition) => composition.evaluations() as f64,
         }
     }
 
@@ -92,9 +88,7 @@ impl Method {
         match self {
             Self::Scene(integrator) => (integrator, None),
             Self::Reading(_) => (Integrator::VelocityVerlet, None),
-            Self::ForestRuth => (Integrator::Pefrl, Some(FOREST_RUTH)),
-            Self::BlanesMoan => (Integrator::Pefrl, Some(BLANES_MOAN)),
-            Self::KahanLi => (Integrator::Pefrl, Some(KAHAN_LI)),
+            Self::Composed(_, composition) => (Integrator::Pefrl, Some(composition)),
         }
     }
 

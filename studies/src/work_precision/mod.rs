@@ -33,8 +33,6 @@ pub(crate) struct WorkPrecision {
     pub(crate) effort: Effort,
     /// The runs that are measured.
     pub(crate) subjects: Vec<Subject>,
-    /// The arguments that repeat it.
-    pub(crate) arguments: Vec<String>,
 }
 
 /// The amount of measurement.
@@ -58,10 +56,6 @@ impl Effort {
 impl Study for WorkPrecision {
     fn name(&self) -> &'static str {
         "work-precision"
-    }
-
-    fn arguments(&self) -> Vec<String> {
-        self.arguments.clone()
     }
 
     /// The number of turns if nothing diverges, and one more for each way to advance a run.

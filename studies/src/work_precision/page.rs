@@ -51,9 +51,10 @@ impl Method {
     fn family(self) -> usize {
         match self {
             Self::Scene(Integrator::VelocityVerlet) | Self::Reading(_) => 1,
-            Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) | Self::ForestRuth => 2,
-            Self::BlanesMoan => 3,
-            Self::KahanLi => 4,
+            Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => 2,
+            Self::Composed(..) if self == Self::FOREST_RUTH => 2,
+            Self::Composed(..) if self == Self::BLANES_MOAN => 3,
+            Self::Composed(..) => 4,
             Self::Scene(Integrator::DormandPrince) => 5,
             Self::Scene(_) => 0,
         }

@@ -23,7 +23,7 @@ pub(super) fn reference(
 ) -> Result<(Course, Reference), String> {
     // With obstacles only the adaptive method is of high order. Of the others, the one with the smallest steps is best.
     let best: &[Method] = if subject.scene.obstacles.is_empty() {
-        &[Method::BlanesMoan, Method::KahanLi, Method::DORMAND_PRINCE, Method::Scene(Integrator::RungeKutta)]
+        &[Method::BLANES_MOAN, Method::KAHAN_LI, Method::DORMAND_PRINCE, Method::Scene(Integrator::RungeKutta)]
     } else {
         &[Method::DORMAND_PRINCE]
     };

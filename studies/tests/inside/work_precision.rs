@@ -52,7 +52,7 @@ fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
     let cost = |method| found.cost(method, 1e-5).expect("it is reached").evaluations;
     let [euler, pefrl] = [Method::DEFAULT, Method::PEFRL].map(cost);
     assert!(euler > 5.0 * pefrl, "{euler} {pefrl}");
-    let orders = [(Method::VERLET, 2.0), (Method::PEFRL, 4.0), (Method::ForestRuth, 4.0)];
+    let orders = [(Method::VERLET, 2.0), (Method::PEFRL, 4.0), (Method::FOREST_RUTH, 4.0)];
     for (method, order) in orders {
         let own = found.order(method).expect("it has one");
         assert!((own - order).abs() < 0.3, "{method:?}: {own}");
