@@ -1,6 +1,6 @@
 //! `animate`: the files as read by other decoders, and messages about frames that do not fit.
 
-use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, frame_tags, has_ffmpeg, lasting, python, run};
+use crate::cli::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, frame_tags, has_ffmpeg, lasting, python, run};
 use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Timeline};
 use localshape::internals::{Shown, Tags};
 use std::path::Path;
@@ -191,7 +191,7 @@ fn any_number_of_threads_makes_the_same_bytes() {
 /// The animation is the same with frames kept or not.
 #[test]
 fn rendering_makes_animations_meanwhile() {
-    let Some(place) = crate::render::place_to_draw() else { return };
+    let Some(place) = crate::cli::render::place_to_draw() else { return };
     let ran = place.run("render small.toml --animate a.gif --animate a.apng").good();
     for line in ["a.gif  96×64, 4 pictures of 7 frames in 0.13 s", "a.apng  96×64, 7 pictures in 0.12 s"] {
         assert!(ran.out.contains(line), "{line}: {}", ran.out);
@@ -218,8 +218,8 @@ fn rendering_makes_animations_meanwhile() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_rendering_makes_no_animation() {
-    use crate::interrupt::{signal, start};
-    let Some(place) = crate::render::place_to_draw() else { return };
+    use crate::cli::interrupt::{signal, start};
+    let Some(place) = crate::cli::render::place_to_draw() else { return };
     place.write("long.toml", &lasting("100"));
     let arguments = "render long.toml --animate a.gif --animate b.apng";
     let running = start(&place, arguments, "output/long/frame_00001.png");
@@ -373,8 +373,8 @@ fn an_ffmpeg_that_is_missing_or_fails_is_told() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_film_leaves_nothing() {
-    use crate::interrupt::{set_signals, signal};
-    use crate::support::Running;
+    use crate::cli::interrupt::{set_signals, signal};
+    use crate::cli::support::Running;
     for script in [
         "echo > started; cat > /dev/null",
         // It reads no pictures, and neither does its child process.

@@ -1,6 +1,6 @@
 //! Scenes of several bodies, and runs with bodies of their own: numbers, states and findings by body and in all.
 
-use crate::support::Place;
+use crate::cli::support::Place;
 use serde_json::{Value, json};
 
 /// Three bodies in the plane.
@@ -124,7 +124,7 @@ fn states_of_bodies() {
     let own = ["rest", "mass", "elements", "faces", "body"];
     let own: Vec<_> = ["coarse", "fine"].iter().flat_map(|run| own.map(|array| format!("{run}.{array}"))).collect();
     assert_eq!(names("own").into_iter().filter(|name| is_own(&name)).collect::<Vec<_>>(), own);
-    let Some(python) = crate::support::numpy() else { return };
+    let Some(python) = crate::cli::support::numpy() else { return };
     // The lines of the page, with its runs and bodies, and what must hold of them.
     let page = include_str!("../../docs/files.md");
     let snippet = page.split("```python\n").find(|part| part.starts_with("ball = ")).expect("the example");
@@ -191,7 +191,7 @@ fn a_golden_names_the_bodies_that_moved() {
 #[cfg(unix)]
 #[test]
 fn cut_and_continued() {
-    use crate::interrupt::{results, signal, start};
+    use crate::cli::interrupt::{results, signal, start};
     let place = Place::new();
     place.write(
         "own.toml",
@@ -227,7 +227,7 @@ fn drawn_from_states() {
         for shard in ["1/2", "2/2"] {
             place.run(&format!("render {name}.toml --from-states {name}/states.npz --shard {shard} -o {name}")).good();
         }
-        let files = |folder: String| crate::parts::files(&place, &folder);
+        let files = |folder: String| crate::cli::parts::files(&place, &folder);
         assert!(files(name.to_owned()) == files(format!("{name}-whole")), "{name}");
     }
 }

@@ -1,6 +1,6 @@
 //! `check`: the contents of scenes, and every mistake in them.
 
-use crate::support::{Place, SMALL, numpy};
+use crate::cli::support::{Place, SMALL, numpy};
 
 #[test]
 fn says_what_a_scene_holds() {

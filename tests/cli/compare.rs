@@ -1,6 +1,6 @@
 //! `compare`: results for pictures and folders of them.
 
-use crate::support::{Place, SMALL, frame_file, frame_tags, run};
+use crate::cli::support::{Place, SMALL, frame_file, frame_tags, run};
 use localshape::internals::Tags;
 
 fn picture(adapter: &str, state: &str, frame: u64, bytes: &[u8]) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! A full disk: one message, no partial files, and finished files are kept.
 #![cfg(target_os = "linux")]
 
-use crate::support::{Place, Ran, lasting, run};
+use crate::cli::support::{Place, Ran, lasting, run};
 use localshape::internals::skipped;
 use std::process::Command;
 
@@ -104,7 +104,7 @@ fn frames_on_a_full_disk() {
 #[cfg(feature = "render")]
 #[test]
 fn animations_on_a_full_disk() {
-    use crate::support::{frame_file, frame_tags};
+    use crate::cli::support::{frame_file, frame_tags};
     let place = Place::new();
     for number in 0..4 {
         // Noise is incompressible.

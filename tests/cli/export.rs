@@ -1,7 +1,7 @@
 //! `--write`: files for other programs, read by them.
 
-use crate::bodies::{BODIES, scene};
-use crate::support::{Place, SMALL, validated, viewers};
+use crate::cli::bodies::{BODIES, scene};
+use crate::cli::support::{Place, SMALL, validated, viewers};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -169,7 +169,7 @@ fn frames_of_the_same_step_are_listed_once() {
 #[test]
 fn vtk_reads_each_body_as_a_part() {
     let place = Place::new();
-    let Some(told_of_all) = told(&place, &crate::bodies::of_their_own(), " --frames 0-6x2") else { return };
+    let Some(told_of_all) = told(&place, &crate::cli::bodies::of_their_own(), " --frames 0-6x2") else { return };
     let all: Vec<_> = told_of_all.lines().collect();
     assert_eq!(all.len(), 3, "{told_of_all}");
     assert!(all[0].starts_with("all [5, 9] ['velocity'] ['turned_over']"), "{told_of_all}");
@@ -233,12 +233,12 @@ fn files_belong_to_their_scene() {
 #[test]
 fn files_after_an_interruption_are_those_without_one() {
     let place = Place::new();
-    place.write("scene.toml", &crate::support::lasting("20"));
+    place.write("scene.toml", &crate::cli::support::lasting("20"));
     place.run("simulate scene.toml --write vtu -o whole").good();
     for (signal, sign) in [("TERM", "out/Local shape/body_00003.vtu"), ("KILL", "out/Local shape/body_00020.vtu")] {
         let typed = "simulate scene.toml --write vtu -o out";
-        let running = crate::interrupt::start(&place, typed, sign);
-        crate::interrupt::signal(&running, &[signal]);
+        let running = crate::cli::interrupt::start(&place, typed, sign);
+        crate::cli::interrupt::signal(&running, &[signal]);
         running.wait();
         let before = place.names("out/Local shape").len();
         assert!((4..1201).contains(&before), "{before}");
@@ -262,7 +262,7 @@ fn files_after_an_interruption_are_those_without_one() {
 #[cfg(feature = "render")]
 #[test]
 fn files_beside_pictures_are_those_of_a_simulation() {
-    if !crate::render::can_draw() {
+    if !crate::cli::render::can_draw() {
         return;
     }
     let place = Place::with_small();
@@ -440,7 +440,7 @@ fn other_programs_read_frames_of_the_same_step_once() {
 #[test]
 fn other_programs_read_each_of_several_bodies() {
     let place = Place::new();
-    let Some(told) = others(&place, &crate::bodies::of_their_own(), "", " --frames 0-4x2,6") else { return };
+    let Some(told) = others(&place, &crate::cli::bodies::of_their_own(), "", " --frames 0-4x2,6") else { return };
     let runs: Vec<_> = told.lines().map(|line| line.split(' ').take(2).collect::<Vec<_>>()).collect();
     assert_eq!(runs, [["all", "2"], ["coarse", "1"], ["fine", "1"]], "{told}");
 }
@@ -484,11 +484,11 @@ fn a_skin_has_no_more_nodes_than_its_format_has_numbers_for() {
 #[test]
 fn courses_after_an_interruption_are_those_without_one() {
     let place = Place::new();
-    place.write("scene.toml", &crate::support::lasting("20"));
+    place.write("scene.toml", &crate::cli::support::lasting("20"));
     place.run("simulate scene.toml --write usd,gltf,obj -o whole").good();
     let typed = "simulate scene.toml --write usd,gltf,obj -o out";
-    let running = crate::interrupt::start(&place, typed, "out/Local shape/frame_00003.obj");
-    crate::interrupt::signal(&running, &["TERM"]);
+    let running = crate::cli::interrupt::start(&place, typed, "out/Local shape/frame_00003.obj");
+    crate::cli::interrupt::signal(&running, &["TERM"]);
     running.wait();
     let recorded = place.json("out/run.json")["frames"]["recorded"].as_u64().unwrap();
     let stage = place.read("out/Mass-spring.usda");
@@ -624,7 +624,7 @@ fn grids_of_vtk_played_back_have_its_points() {
 #[cfg(feature = "render")]
 #[test]
 fn our_own_files_played_back_give_the_pictures_of_the_run() {
-    let Some(place) = crate::render::place_to_draw() else { return };
+    let Some(place) = crate::cli::render::place_to_draw() else { return };
     let text = MIXED
         .replace("colour.by = \"elastic-energy\"", "camera.distance = 2\nlabels = [\"name\", \"clock\", \"number\"]");
     place.write("mixed.toml", &text);

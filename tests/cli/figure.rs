@@ -1,6 +1,6 @@
 //! `figure`: the paper's figures and a user's own, as files and on standard output.
-use crate::render::can_draw;
-use crate::support::{Place, SMALL};
+use crate::cli::render::can_draw;
+use crate::cli::support::{Place, SMALL};
 
 const SHEET: &str = r#"
 title = "Two cubes"

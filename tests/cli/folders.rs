@@ -1,6 +1,6 @@
 //! Ownership of output folders.
 
-use crate::support::{Place, Running, lasting, run};
+use crate::cli::support::{Place, Running, lasting, run};
 use std::process::Command;
 
 #[test]
@@ -8,7 +8,7 @@ fn the_same_scene_replaces_its_files() {
     let place = Place::with_small();
     place.run("simulate small.toml").good();
     place.write("output/small/notes.txt", "mine");
-    place.write("small.toml", &format!("# another comment\n{}", crate::support::SMALL));
+    place.write("small.toml", &format!("# another comment\n{}", crate::cli::support::SMALL));
     place.run("simulate small.toml").good();
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "notes.txt", "run.json"]);
 }
@@ -70,11 +70,11 @@ fn a_folder_named_after_its_scene_follows_the_file() {
     place.write("small.toml", &lasting("0.05"));
     assert_eq!(place.run("simulate small.toml -q").good().out, "");
     // A file of the same name elsewhere is another scene.
-    place.write("elsewhere/small.toml", crate::support::SMALL);
+    place.write("elsewhere/small.toml", crate::cli::support::SMALL);
     let other = place.run("simulate elsewhere/small.toml");
     other.bad(2, &["output/small holds the results of another scene (“Two cubes”, ", file.to_str().unwrap()]);
     // A scene of unknown origin is another scene, too. A scene with another value of a key is another version.
-    place.write("small.toml", crate::support::SMALL);
+    place.write("small.toml", crate::cli::support::SMALL);
     let summary = place.read("output/small/run.json");
     let nameless: String = summary.lines().filter(|line| !line.contains("file\":")).collect();
     place.write("output/small/run.json", &nameless);
@@ -88,7 +88,7 @@ fn a_folder_named_after_its_scene_follows_the_file() {
 #[test]
 fn a_project_that_has_moved_is_the_same() {
     let place = Place::new();
-    place.write("before/small.toml", crate::support::SMALL);
+    place.write("before/small.toml", crate::cli::support::SMALL);
     let simulate = |project: &str| run(place.command(["simulate", "small.toml"]).current_dir(place.path(project)));
     simulate("before").good();
     assert_eq!(place.json("before/output/small/run.json")["scene"]["relative_file"], "../../small.toml");
@@ -238,7 +238,7 @@ fn one_program_at_a_time() {
     let place = Place::with_small();
     place.write("long.toml", &lasting("100000"));
     place.write("other.toml", &lasting("0.05").replace("Two cubes", "Others"));
-    let mut first = crate::interrupt::start(&place, "simulate long.toml -o out", "out/run.json");
+    let mut first = crate::cli::interrupt::start(&place, "simulate long.toml -o out", "out/run.json");
     let words = ["out is in use: another process is writing there; ", "-o"];
     for command in ["simulate long.toml", "simulate other.toml", "simulate other.toml --overwrite"] {
         place.run(&format!("{command} -o out")).bad(2, &words);

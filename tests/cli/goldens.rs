@@ -1,6 +1,6 @@
 //! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
 
-use crate::support::{Place, SMALL, frame_file, lasting, run};
+use crate::cli::support::{Place, SMALL, frame_file, lasting, run};
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::internals::Pixels;
 use localshape::internals::skipped;

@@ -1,6 +1,6 @@
 //! `info`, `schema` and `completions`; and closed standard output.
 
-use crate::support::{Place, Running, run};
+use crate::cli::support::{Place, Running, run};
 
 #[test]
 fn information_works_without_any_driver() {
@@ -92,7 +92,7 @@ fn completions_for_each_shell() {
 #[test]
 fn a_closed_pipe_is_no_failure() {
     let place = Place::with_small();
-    place.write("other.toml", crate::support::SMALL);
+    place.write("other.toml", crate::cli::support::SMALL);
     for arguments in
         ["schema", "completions bash", "info", "check small.toml", "simulate small.toml other.toml", "--help"]
     {

@@ -1,7 +1,7 @@
 //! Signals: files are complete at any time of the interruption.
 #![cfg(unix)]
 
-use crate::support::{Place, Ran, Running, lasting, run};
+use crate::cli::support::{Place, Ran, Running, lasting, run};
 use libc::{SIGHUP, SIGINT, SIGTERM};
 use std::ffi::c_int;
 use std::process::Command;
@@ -143,7 +143,7 @@ fn a_later_ctrl_c_ends_at_once() {
 #[test]
 fn later_scenes_are_not_begun() {
     let place = place_for_long();
-    place.write("small.toml", crate::support::SMALL);
+    place.write("small.toml", crate::cli::support::SMALL);
     let running = start(&place, "simulate long.toml small.toml --json -o out", "out/long/run.json");
     signal(&running, &["INT"]);
     let ran = running.wait();

@@ -1,7 +1,7 @@
 //! Sequences drawn in parts: after an interruption, and from stored states.
 
-use crate::render::{can_draw, place_to_draw};
-use crate::support::{Place, Ran, SMALL, lasting, run};
+use crate::cli::render::{can_draw, place_to_draw};
+use crate::cli::support::{Place, Ran, SMALL, lasting, run};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -46,8 +46,8 @@ fn resumed_frames_are_those_of_a_run_without_interruption() {
     place.run("render scene.toml -o whole").good();
     for (folder, signal) in [("killed", "KILL"), ("ended", "TERM")] {
         let sign = format!("{folder}/frame_00003.png");
-        let running = crate::interrupt::start(&place, &format!("render scene.toml -o {folder}"), &sign);
-        crate::interrupt::signal(&running, &[signal]);
+        let running = crate::cli::interrupt::start(&place, &format!("render scene.toml -o {folder}"), &sign);
+        crate::cli::interrupt::signal(&running, &[signal]);
         running.wait();
         let before = place.names(folder).iter().filter(|name| name.ends_with(".png")).count() as u64;
         assert!((4..121).contains(&before), "{before} frames of 121 are drawn");
@@ -98,7 +98,7 @@ fn an_animation_of_resumed_frames_is_the_same() {
     std::fs::remove_file(place.path("output/small/frame_00002.png")).unwrap();
     place.run("render small.toml --resume --animate resumed.apng").good();
     assert_eq!(drawn_and_kept(&place, "output/small"), [1, 6]);
-    let shown = |name: &str| crate::animate::decode_apng(&place.path(name));
+    let shown = |name: &str| crate::cli::animate::decode_apng(&place.path(name));
     assert!(shown("whole.apng") == shown("resumed.apng"));
     place.run("render small.toml --resume --animate again.apng --no-frames").good();
     assert!(shown("whole.apng") == shown("again.apng"));
@@ -257,7 +257,7 @@ fn states_that_do_not_fit_are_refused() {
 /// A file rewritten by another program is not accepted.
 #[test]
 fn states_that_numpy_has_written_are_refused() {
-    let (Some(place), Some(python)) = (place_to_draw(), crate::support::numpy()) else { return };
+    let (Some(place), Some(python)) = (place_to_draw(), crate::cli::support::numpy()) else { return };
     place.run("simulate small.toml --states -o states").good();
     let script = "import numpy; states = dict(numpy.load('states/states.npz')); print(states['localshape'].dtype)\n\
                   assert states['Mass-spring.memory'].shape == (7, 0)\n\

@@ -1,8 +1,8 @@
 //! Runs that show recorded states.
 
-use crate::parts::files;
-use crate::render::place_to_draw;
-use crate::support::{Place, lasting};
+use crate::cli::parts::files;
+use crate::cli::render::place_to_draw;
+use crate::cli::support::{Place, lasting};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 
@@ -112,7 +112,7 @@ fn our_own_run_that_diverged_is_played_back_as_such() {
     assert_eq!(run("own"), run("played"));
     assert_eq!(run("own")[0], "diverged");
     // Numbers that were changed since are not those of the run that diverged.
-    let Some(python) = crate::support::numpy() else { return };
+    let Some(python) = crate::cli::support::numpy() else { return };
     let script = "import numpy; states = dict(numpy.load('own/states.npz')); states['Local shape.position'][0, :, 0] += 1\n\
                   numpy.savez('own/states.npz', **states)";
     python(&place.path("."), script);
@@ -195,7 +195,7 @@ fn a_recording_ends() {
 /// The documented scene and script.
 #[test]
 fn a_recording_written_with_numpy() {
-    let Some(python) = crate::support::numpy() else { return };
+    let Some(python) = crate::cli::support::numpy() else { return };
     let text = include_str!("../../docs/recordings.md");
     let block = |opening: &str| {
         let start = text.find(opening).expect("a block") + opening.len();

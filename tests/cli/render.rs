@@ -1,6 +1,6 @@
 //! `render`: frames and their metadata.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command};
+use crate::cli::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command};
 use localshape::internals::{Shown, Tags, read_tags, skipped};
 use localshape::runner::History;
 use localshape::{AdapterChoice, FrameFolder, Gpu, Limits, Renderer, Runner, Scene, compose};
@@ -260,10 +260,10 @@ fn strips_are_the_same_whichever_frames_are_drawn() {
 fn interrupted_while_simulating_ahead() {
     let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &with_strip(&lasting("100000")));
-    let running = crate::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
-    crate::interrupt::signal(&running, &["INT"]);
+    let running = crate::cli::interrupt::start(&place, "render long.toml --frames 0", "output/long/run.json");
+    crate::cli::interrupt::signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
-    assert_eq!(crate::interrupt::results(&place, "output/long"), ["diagnostics.csv", "run.json"]);
+    assert_eq!(crate::cli::interrupt::results(&place, "output/long"), ["diagnostics.csv", "run.json"]);
     let run = place.json("output/long/run.json");
     assert_eq!((&run["outcome"], run["frames"]["recorded"].as_u64()), (&"interrupted".into(), Some(0)));
 }
@@ -365,13 +365,13 @@ fn says_which_runs_leave_their_panels() {
 fn interrupted_while_drawing() {
     let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &lasting("1000"));
-    let running = crate::interrupt::start(&place, "render long.toml", "output/long/frame_00003.png");
-    crate::interrupt::signal(&running, &["INT"]);
+    let running = crate::cli::interrupt::start(&place, "render long.toml", "output/long/frame_00003.png");
+    crate::cli::interrupt::signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
     let run = place.json("output/long/run.json");
     let written = run["frames"]["written"].as_u64().unwrap();
     assert_eq!(run["frames"]["recorded"].as_u64(), Some(written));
-    let names = crate::interrupt::results(&place, "output/long");
+    let names = crate::cli::interrupt::results(&place, "output/long");
     assert_eq!(names.len() as u64, written + 2);
     for name in names.iter().filter(|name| name.ends_with(".png")) {
         pixels(&place.path("output/long").join(name));
@@ -384,7 +384,7 @@ fn interrupted_while_drawing() {
 fn a_frame_that_cannot_be_written() {
     let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &lasting("10"));
-    let running = crate::interrupt::start(&place, "render long.toml -o out", "out/run.json");
+    let running = crate::cli::interrupt::start(&place, "render long.toml -o out", "out/run.json");
     // A folder in the place of a file fails early.
     place.write("out/frame_00300.png/notes.txt", "mine");
     running.wait().bad(4, &["cannot write out/frame_00300.png"]);
@@ -471,7 +471,7 @@ fn widths_of_vectors_that_crash_the_driver_are_not_passed_on() {
 #[test]
 fn charts_and_numbers_agree() {
     let place = Place::new();
-    place.write("disc.toml", &crate::support::disc("2").replace(", every = 0.004", ", frames_per_second = 5"));
+    place.write("disc.toml", &crate::cli::support::disc("2").replace(", every = 0.004", ", frames_per_second = 5"));
     place.run("render disc.toml -o out").good();
     let scene = Scene::load(&place.path("disc.toml"), &Limits::default()).expect("a scene");
     let history = History::for_pictures(&scene, &[0]);

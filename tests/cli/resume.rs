@@ -1,10 +1,10 @@
 //! `--resume`: completes the results of an interrupted command, with the bytes of an uninterrupted one.
 #![cfg(unix)]
 
-use crate::interrupt::{results, signal, start};
+use crate::cli::interrupt::{results, signal, start};
 #[cfg(feature = "render")]
-use crate::support::disc;
-use crate::support::{Place, Ran, Running, lasting};
+use crate::cli::support::disc;
+use crate::cli::support::{Place, Ran, Running, lasting};
 use std::collections::BTreeMap;
 
 const CHECKPOINT: &str = ".localshape-checkpoint.partial";
@@ -112,11 +112,11 @@ fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
 #[cfg(feature = "render")]
 #[test]
 fn pictures_go_on_too() {
-    if !crate::render::can_draw() {
+    if !crate::cli::render::can_draw() {
         return;
     }
     let place = Place::new();
-    let (still, follows) = (lasting("6"), crate::support::SMALL.replace("duration = 0.1", "duration = 600"));
+    let (still, follows) = (lasting("6"), crate::cli::support::SMALL.replace("duration = 0.1", "duration = 600"));
     for (name, scene, sign, frames) in
         [("still", still, "frame_00020.png", "0-360x20"), ("follows", follows, "run.json", "0-36000x2000")]
     {
@@ -128,7 +128,7 @@ fn pictures_go_on_too() {
         let kept = place.names(name).iter().filter(|name| name.ends_with(".png")).count() as u64;
         let ran = place.run(&format!("{typed} --resume")).good();
         assert!(ran.out.contains("19 frames of 96×64"), "{ran:?}");
-        assert_eq!(crate::parts::drawn_and_kept(&place, name), [19 - kept, kept], "{name}");
+        assert_eq!(crate::cli::parts::drawn_and_kept(&place, name), [19 - kept, kept], "{name}");
         place.run(&format!("render {name}.toml --frames {frames} --states -o whole --overwrite")).good();
         assert_eq!(told(&place, name), told(&place, "whole"), "{name}");
         assert!(files(&place, name) == files(&place, "whole"), "{name}");
@@ -188,7 +188,7 @@ fn a_checkpoint_of_something_else_is_refused() {
 #[cfg(feature = "render")]
 #[test]
 fn without_its_frames_a_checkpoint_is_refused() {
-    if !crate::render::can_draw() {
+    if !crate::cli::render::can_draw() {
         return;
     }
     let place = Place::new();
@@ -214,7 +214,7 @@ fn without_its_frames_a_checkpoint_is_refused() {
     let drawn = std::fs::read(&other).unwrap();
     let tags = localshape::internals::Tags { adapter: "Another one".to_owned(), ..tags };
     let pixels = vec![0; size[0] as usize * size[1] as usize * 3];
-    std::fs::write(&other, crate::support::frame_file(size, &pixels, &tags)).unwrap();
+    std::fs::write(&other, crate::cli::support::frame_file(size, &pixels, &tags)).unwrap();
     refused(&["frame_00001.png, which Another one has drawn, and this is ", "; choose that with --adapter", way_out]);
     std::fs::write(&other, drawn).unwrap();
     std::fs::write(&frame, &bytes).unwrap();

@@ -1,9 +1,9 @@
 //! `--set`: another value of a key for one command.
 
-use crate::support::{Place, SMALL, run};
+use crate::cli::support::{Place, SMALL, run};
 
 /// Runs the program with words that may have spaces.
-fn simulate(place: &Place, words: &[&str]) -> crate::support::Ran {
+fn simulate(place: &Place, words: &[&str]) -> crate::cli::support::Ran {
     run(&mut place.command([&["simulate", "small.toml"], words].concat()))
 }
 
@@ -116,8 +116,8 @@ fn check_and_resuming_repeat_the_option() {
     #[cfg(unix)]
     {
         let typed = "simulate small.toml --set time.duration=1e5 -o out";
-        let running = crate::interrupt::start(&place, typed, "out/run.json");
-        crate::interrupt::signal(&running, &["INT"]);
+        let running = crate::cli::interrupt::start(&place, typed, "out/run.json");
+        crate::cli::interrupt::signal(&running, &["INT"]);
         let ran = running.wait();
         let how = place.shown("simulate --resume small.toml --set time.duration=1e5 -o out");
         assert!(ran.out.contains(&format!("to go on: {how}\n")), "{ran:?}");
@@ -128,7 +128,7 @@ fn check_and_resuming_repeat_the_option() {
 #[cfg(feature = "render")]
 #[test]
 fn figures_are_drawn_with_other_values() {
-    if !crate::render::can_draw() {
+    if !crate::cli::render::can_draw() {
         return;
     }
     let place = Place::new();

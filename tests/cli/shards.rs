@@ -1,8 +1,8 @@
 //! `render --shard`: processes that draw into one folder at the same time.
 
-use crate::parts::{drawn_and_kept, files, rich};
-use crate::render::{can_draw, place_to_draw};
-use crate::support::{Place, SMALL, lasting, run};
+use crate::cli::parts::{drawn_and_kept, files, rich};
+use crate::cli::render::{can_draw, place_to_draw};
+use crate::cli::support::{Place, SMALL, lasting, run};
 #[cfg(unix)]
 use std::process::Command;
 
@@ -21,8 +21,8 @@ fn shards_at_once_are_the_whole() {
     let shard = |number: usize| {
         format!("render scene.toml --from-states made/states.npz --shard {number}/3 --threads 1 -o made --resume")
     };
-    let mut killed = crate::interrupt::start(&place, &shard(2), "made/frame_00001.png");
-    let others = [1, 3].map(|number| crate::interrupt::start(&place, &shard(number), "made/run.json"));
+    let mut killed = crate::cli::interrupt::start(&place, &shard(2), "made/frame_00001.png");
+    let others = [1, 3].map(|number| crate::cli::interrupt::start(&place, &shard(number), "made/run.json"));
     killed.kill();
     for running in others {
         running.wait().too_large_steps();
@@ -109,10 +109,10 @@ fn checkpoints_are_left_alone() {
     let Some(place) = place_to_draw() else { return };
     place.write("scene.toml", &lasting("100000"));
     let simulate = "simulate scene.toml -o made";
-    let running = crate::interrupt::start(&place, simulate, "made/run.json");
+    let running = crate::cli::interrupt::start(&place, simulate, "made/run.json");
     let shard = "render scene.toml --frames 0-9 --shard 1/2 -o made";
     place.run(shard).bad(2, &["made is in use: another process is writing there"]);
-    crate::interrupt::signal(&running, &["INT"]);
+    crate::cli::interrupt::signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
     let hidden = |place: &Place| -> Vec<(String, Vec<u8>)> {
         let names = place.names("made").into_iter().filter(|name| name.starts_with('.'));
@@ -121,10 +121,10 @@ fn checkpoints_are_left_alone() {
     let before = hidden(&place);
     assert!(!before.is_empty());
     place.run(shard).good();
-    let running = crate::interrupt::start(&place, "render scene.toml --shard 1/2 -o made", "made/frame_00012.png");
+    let running = crate::cli::interrupt::start(&place, "render scene.toml --shard 1/2 -o made", "made/frame_00012.png");
     place.run("render scene.toml --frames 0-9 --shard 2/2 -o made --resume").good();
     place.run(&format!("{simulate} --resume")).bad(2, &["made is in use"]);
-    crate::interrupt::signal(&running, &["TERM"]);
+    crate::cli::interrupt::signal(&running, &["TERM"]);
     let ran = running.wait();
     assert!(ran.status == Some(130) && ran.out.contains("render --resume scene.toml --shard 1/2 -o made"), "{ran:?}");
     assert!(hidden(&place) == before);

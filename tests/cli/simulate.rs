@@ -1,6 +1,6 @@
 //! `simulate`: diagnostics, summary and states.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES, documented, frame_file, lasting, run};
+use crate::cli::support::{Place, SMALL, SMALL_FRAMES, documented, frame_file, lasting, run};
 use localshape::internals::{Shown, Spent, Tags, Timings};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
@@ -252,7 +252,7 @@ fn json_is_one_document_also_when_a_later_scene_fails() {
     place.write("other.toml", &lasting("300"));
     place.write("third.toml", SMALL);
     let arguments = "simulate small.toml other.toml third.toml -o out --json";
-    let running = crate::interrupt::start(&place, arguments, "out/other/run.json");
+    let running = crate::cli::interrupt::start(&place, arguments, "out/other/run.json");
     // A folder in the place of a file fails early.
     place.write("out/other/diagnostics.csv/notes.txt", "mine");
     let ran = running.wait().bad(4, &["cannot write", "diagnostics.csv"]);
@@ -338,7 +338,7 @@ fn everything_in_the_files_is_documented() {
     // Several bodies, which diverge and could break, have more arrays and keys.
     place.write(
         "bodies.toml",
-        &crate::bodies::of_their_own()
+        &crate::cli::bodies::of_their_own()
             .replace("step = 5e-4", "step = 0.05")
             .replace("= 0.1\n", "= 10.0\n")
             .replace("stiffness = 1e4 }", "stiffness = 1e4, breaks_at = 1e9 }"),
@@ -482,7 +482,7 @@ fn states_come_with_their_body() {
     assert_eq!(indices("both/bars/states.npz", "elements").1, [0, 1, 1, 2]);
     let (head, faces) = indices("both/bars/states.npz", "faces");
     assert_eq!((head.as_str(), faces.len()), ("{'descr': '<i8', 'fortran_order': False, 'shape': (0, 3), }", 0));
-    if let Some(python) = crate::support::numpy() {
+    if let Some(python) = crate::cli::support::numpy() {
         let script = "import numpy; a = numpy.load('both/disc/states.npz'); print(a['elements'].shape, a['mass'].sum(), a['Local shape.position'].shape)";
         let output = python(place.path(".").as_path(), script);
         assert_eq!(output, "(6, 4) 7.0 (7, 7, 3)\n");
@@ -653,7 +653,7 @@ fn rows_between_frames() {
 fn rows_between_frames_of_bodies_that_diverge() {
     let place = Place::new();
     // The cube diverges between the first frame and the second.
-    let scene = crate::bodies::of_their_own().replace("step = 5e-4", "step = 0.02\nevery = 0.02");
+    let scene = crate::cli::bodies::of_their_own().replace("step = 5e-4", "step = 0.02\nevery = 0.02");
     place.write("bodies.toml", &scene.replace("= 0.1\nstep", "= 1.0\nstep").replace("= 60\n", "= 10\n"));
     place.run("simulate bodies.toml -o out").too_large_steps();
     let text = place.read("out/diagnostics.csv");

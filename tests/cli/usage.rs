@@ -1,6 +1,6 @@
 //! Wrong usage: every mistake has its message and exit status 2.
 
-use crate::support::{Place, SMALL, run};
+use crate::cli::support::{Place, SMALL, run};
 
 #[test]
 fn help_and_version_are_results() {

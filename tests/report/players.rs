@@ -1,6 +1,6 @@
 //! Animations in the browser's own players: their first and last pictures.
 
-use crate::browser::Browser;
+use super::browser::Browser;
 use localshape::internals::{Compression, Shown, Tags, encode};
 use serde_json::json;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! SVG files as Chromium shows them and PDF files as poppler shows them, beside the PNG files of the program.
 
-use crate::browser::Browser;
+use super::browser::Browser;
 use std::path::Path;
 use std::process::{Command, Stdio};
 

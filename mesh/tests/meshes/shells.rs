@@ -1,8 +1,6 @@
 //! Fillings of surfaces of several shells: apart, crossing, and in each other.
 
-mod common;
-
-use common::{ball, block, ring, together};
+use crate::common::{ball, block, ring, together};
 use glam::{DQuat, DVec3};
 use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::bounds;

@@ -1,8 +1,6 @@
 //! Surfaces filled with cubes.
 
-mod common;
-
-use common::{apart, ball, block, ring, scan, together};
+use crate::common::{apart, ball, block, ring, scan, together};
 use glam::{DMat3, DVec3};
 use localshape_mesh::{Fill, Filled, Group, Surface, fill};
 

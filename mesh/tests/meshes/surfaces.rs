@@ -1,8 +1,6 @@
 //! What surfaces are, and how they are mended.
 
-mod common;
-
-use common::{apart, ball, block, ring, scan, together};
+use crate::common::{apart, ball, block, ring, scan, together};
 use glam::DVec3;
 use localshape_mesh::{Fill, Flaws, Surface, fill};
 

@@ -46,7 +46,7 @@ fn instructions(folder: &Path, case: usize, steps: u64) -> u64 {
     let valgrind = Command::new("valgrind")
         .args(["--tool=callgrind", &out])
         .arg(std::env::current_exe().expect("this test"))
-        .args(["--ignored", "--exact", "steps", "--test-threads", "1"])
+        .args(["--ignored", "--exact", "instructions::steps", "--test-threads", "1"])
         .envs([("CASE", case.to_string()), ("STEPS", steps.to_string())])
         .stdin(Stdio::null())
         .output()

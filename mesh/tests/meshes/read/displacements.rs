@@ -6,7 +6,7 @@ use localshape_mesh::{Format, Limits, read_cells};
 
 /// The file with an array of other displacements.
 fn displaced(name: &str, components: usize, numbers: &str) -> String {
-    let text = include_str!("../files/displaced.vtu");
+    let text = include_str!("../../files/displaced.vtu");
     let old = "Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 0.5 0 0 0 0.25 0 0 0 -1<";
     assert!(text.contains(old));
     text.replace(old, &format!("Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">{numbers}<"))
@@ -15,7 +15,7 @@ fn displaced(name: &str, components: usize, numbers: &str) -> String {
 /// Displacements are the point data `U` with two or three components, and are not added to the points.
 #[test]
 fn displacements_are_read_beside_points() {
-    let bytes = include_bytes!("../files/displaced.vtu");
+    let bytes = include_bytes!("../../files/displaced.vtu");
     let limits = Limits { points: 4, corners: 4 };
     let cells = read_cells(bytes, Format::Vtu, &limits).unwrap();
     let moved = [DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.25, -DVec3::Z];

@@ -1,9 +1,7 @@
 //! Surfaces filled with elements that end at the surface.
 
-mod common;
-
-use common::near::outside;
-use common::{ball, block, ring, scan, together};
+use crate::common::near::outside;
+use crate::common::{ball, block, ring, scan, together};
 use glam::{DMat3, DQuat, DVec3};
 use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::{around, bounds, volumes_at_rest};

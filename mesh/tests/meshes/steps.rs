@@ -1,8 +1,6 @@
 //! Filled surfaces in motion: cubes that are hardly filled do not shorten the step, and a bar hangs as its material lets it.
 
-mod common;
-
-use common::{ball, ring};
+use crate::common::{ball, ring};
 use glam::DVec3;
 use localshape_mesh::{Cage, Fill, Filled, Surface, fill};
 use localshape_sim::geometry::volumes_at_rest;
@@ -44,7 +42,7 @@ fn filled(surface: &Surface, with: Fill) -> Arc<Body> {
 
 /// One full cube.
 fn cube(side: f64) -> Arc<Body> {
-    body(&common::block(DVec3::ZERO, DVec3::splat(side)), side)
+    body(&crate::common::block(DVec3::ZERO, DVec3::splat(side)), side)
 }
 
 /// The volume in the carried surface (m³), with the nodes at positions (m).
@@ -78,8 +76,9 @@ fn sinking(bar: &Surface, with: Fill) -> f64 {
 
 #[test]
 fn a_hanging_bar_sinks_as_far_as_its_material_lets_it() {
-    let bar =
-        |wide: f64| common::block(DVec3::new(-0.5 * wide, 0.0, -0.5 * wide), DVec3::new(0.5 * wide, 1.0, 0.5 * wide));
+    let bar = |wide: f64| {
+        crate::common::block(DVec3::new(-0.5 * wide, 0.0, -0.5 * wide), DVec3::new(0.5 * wide, 1.0, 0.5 * wide))
+    };
     for cells in [9.0, 10.0, 15.0, 20.0] {
         let side = 1.0 / cells;
         let cubes = [Fill::Cubes { side }, Fill::Graded { side }];

@@ -2,9 +2,7 @@
 //! and `assimp-testmodels`, and those in folders named by `LOCALSHAPE_MESHES`. With `LOCALSHAPE_REQUIRE_MESHES=1` missing packages are a
 //! failure.
 
-mod common;
-
-use common::near::outside;
+use crate::common::near::outside;
 use localshape_mesh::{Cage, Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::bounds;
 use localshape_sim::{Body, Solids};

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 /// How far elements stand out of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Outside {
+pub(crate) struct Outside {
     /// The greatest distance of a node outside, in sides of the lattice; at least 1 if it is infinite.
     pub farthest: f64,
     /// The number of nodes farther outside than an eighth of a side.
@@ -120,7 +120,7 @@ fn reaches_behind(corners: &[DVec3], planes: &[(DVec3, f64)], slack: f64) -> boo
 }
 
 /// How far the elements of a lattice stand out of the surface that they fill.
-pub fn outside(filled: &Filled, body: &Body, side: f64) -> Outside {
+pub(crate) fn outside(filled: &Filled, body: &Body, side: f64) -> Outside {
     let near = Near::new(&filled.surface, side);
     let mut found = Outside::default();
     for &node in body.rest() {

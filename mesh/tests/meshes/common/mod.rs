@@ -1,13 +1,12 @@
 //! Surfaces to test with.
-#![allow(dead_code, unreachable_pub, reason = "each test uses some")]
 
-pub mod near;
+pub(crate) mod near;
 
 use glam::DVec3;
 use localshape_mesh::{Format, Limits, Mesh, Surface, read};
 
 /// A box of 12 triangles.
-pub fn block(low: DVec3, high: DVec3) -> Surface {
+pub(crate) fn block(low: DVec3, high: DVec3) -> Surface {
     let points = (0..8).map(|n| DVec3::select(glam::BVec3::new(n & 1 > 0, n & 2 > 0, n & 4 > 0), high, low)).collect();
     let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
@@ -15,7 +14,7 @@ pub fn block(low: DVec3, high: DVec3) -> Surface {
 }
 
 /// Several surfaces as one.
-pub fn together(all: &[Surface]) -> Surface {
+pub(crate) fn together(all: &[Surface]) -> Surface {
     let mut sum = Surface::default();
     for surface in all {
         let first = sum.points.len() as u32;
@@ -44,7 +43,7 @@ fn grid(around: u32, along: u32, closes: bool, at: impl Fn(f64, f64) -> DVec3) -
 }
 
 /// A ball.
-pub fn ball(middle: DVec3, radius: f64, around: u32) -> Surface {
+pub(crate) fn ball(middle: DVec3, radius: f64, around: u32) -> Surface {
     use std::f64::consts::{PI, TAU};
     grid(around, around / 2, false, |u, v| {
         let (u, v) = (TAU * u, PI * v);
@@ -54,7 +53,7 @@ pub fn ball(middle: DVec3, radius: f64, around: u32) -> Surface {
 }
 
 /// A ring about the z-axis.
-pub fn ring(radius: f64, thickness: f64, around: u32) -> Surface {
+pub(crate) fn ring(radius: f64, thickness: f64, around: u32) -> Surface {
     use std::f64::consts::TAU;
     grid(around, around / 2, true, |u, v| {
         let (u, v) = (TAU * u, TAU * v);
@@ -64,14 +63,14 @@ pub fn ring(radius: f64, thickness: f64, around: u32) -> Surface {
 }
 
 /// The triangles of a surface as they are in a file without shared points.
-pub fn apart(surface: &Surface) -> Surface {
+pub(crate) fn apart(surface: &Surface) -> Surface {
     let points = surface.triangles.as_flattened().iter().map(|&point| surface.points[point as usize]).collect();
     let triangles = (0..surface.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
     Surface { points, triangles, ..Surface::default() }
 }
 
 /// A surface of Debian's package `libcgal-demo`, if it is installed.
-pub fn scan(name: &str) -> Option<Surface> {
+pub(crate) fn scan(name: &str) -> Option<Surface> {
     let archive = "/usr/share/doc/libcgal-dev/data.tar.gz";
     let member = format!("data/meshes/{name}");
     let output = std::process::Command::new("tar").args(["xzOf", archive, "--occurrence", &member]).output().ok()?;
