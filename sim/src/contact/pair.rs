@@ -97,11 +97,15 @@ pub(super) struct Seen<'a> {
     pub(super) rest: Places<'a>,
     /// The points of each surface at the start of the step (m); of those in pairs.
     pub(super) start: &'a [Vec<DVec3>],
+    /// All nodes then.
+    pub(super) nodes: Places<'a>,
     /// At the end of the step, before contact.
     pub(super) end: Places<'a>,
     /// The velocities at the start and at the end (m/s).
     pub(super) velocity: [Places<'a>; 2],
     pub(super) inverse_mass: &'a [f64],
+    /// See [`Touch::drag`]: for a surface, a point on its axis (m), and the way from there to its surface (m).
+    pub(super) drag: &'a dyn Fn(usize, DVec3, DVec3) -> DVec3,
     pub(super) timing: Timing,
 }
 
@@ -228,7 +232,7 @@ impl Pair {
                     return *way + closest.rests.max(distance - law.gap);
                 }
                 if distance > 0.0 {
-                    touches.push(kind, [one.surface, other.surface], *law, &closest, distance, ahead, seen);
+                    touches.push(kind, *of, [one.surface, other.surface], *law, &closest, distance, ahead, seen);
                 }
                 f64::NEG_INFINITY
             });
@@ -242,6 +246,7 @@ impl Touches {
     fn push(
         &mut self,
         kind: Kind,
+        of: [usize; 2],
         surfaces: [&Surface; 2],
         law: Law,
         closest: &Closest,
@@ -275,9 +280,12 @@ impl Touches {
         }
         let change = along(&seen.velocity[0]) - along(&seen.velocity[1]);
         let [to_rebound, to_path] = seen.timing.lags().map(|lag| lag * change);
+        let there = terms.iter().filter(|term| term.weight < 0.0);
+        let there: DVec3 = there.map(|term| seen.nodes.node(term.node) * -term.weight).sum();
+        let drag = (seen.drag)(of[1], there, normal * surfaces[1].thickness);
         let terms = [first, self.terms.len()].map(|at| at as u32);
         let list = if kind == Kind::Edges { &mut self.of_edges } else { &mut self.of_points };
-        list.push(Touch { law, normal, distance, mobility, to_rebound, to_path, terms });
+        list.push(Touch { law, normal, distance, mobility, drag, to_rebound, to_path, terms });
     }
 }
 
@@ -394,7 +402,7 @@ fn flat_for(along: DVec3, from: DVec3, mut wings: impl Iterator<Item = DVec3>) -
     let (Some(first), Some(second), None) = (wings.next(), wings.next(), wings.next()) else { return 0.0 };
     let [one, other] = [first, second].map(|corner| (corner - from).cross(along));
     let bend = one.cross(other).length() / (one.length() * other.length());
-    if one.dot(other) >= 0.0 || !(bend < BEND) {
+    if one.dot(other) >= 0.0 || bend >= BEND || bend.is_nan() {
         return 0.0;
     }
     (BEND - bend) * one.length().min(other.length()) / along.length()

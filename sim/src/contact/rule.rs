@@ -56,6 +56,8 @@ pub(super) struct Touch {
     pub(super) distance: f64,
     /// `Σ c²/m` (1/kg).
     pub(super) mobility: f64,
+    /// The velocity (m/s) by which the surface of a round obstacle that turns moves along at the contact, beside that of its axis.
+    pub(super) drag: DVec3,
     /// What has to be added to their speed (m/s) for the one that decides the rebound.
     pub(super) to_rebound: f64,
     /// What has to be added to their speed (m/s) for the mean one in the step.
@@ -100,7 +102,7 @@ impl Moved<'_> {
         if reached >= gap {
             return DVec3::ZERO;
         }
-        let relative = sum(&|node| self.speed(node));
+        let relative = sum(&|node| self.speed(node)) - touch.drag;
         let along = normal.dot(relative);
         // The speed that leaves the pair as near as it may come, and the one that throws it back.
         let apart = (gap.min(distance) - distance) / self.step - (along + touch.to_path);

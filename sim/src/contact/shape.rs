@@ -120,7 +120,7 @@ impl Shape {
         let mut own = Weights::default();
         (first..).zip(&points).for_each(|(node, _)| own.push(&[node], &[1.0]));
         let mut surface = Surface::new(own, facets, if dimension == Dimension::Space { &bars } else { &[] });
-        surface.thickness = radius;
+        (surface.thickness, surface.is_round) = (radius, radius > 0.0);
         Some((surface, points))
     }
 

@@ -185,7 +185,7 @@ impl Stage {
         let longest = |ways: &[Way]| ways.iter().fold(0.0, |most: f64, way| most.max(way.length()));
         let [since, ahead] = [0, 1].map(|at| longest(&known.moved[at]));
         known.left -= 2.0 * since;
-        if !(known.left >= 4.0 * ahead) {
+        if known.left < 4.0 * ahead || known.left.is_nan() {
             known.left = self.choose(&start, ahead, &mut known.pairs);
         }
         known.placed.resize(self.surfaces.len(), Vec::new());
@@ -200,6 +200,8 @@ impl Stage {
             surfaces: &self.surfaces,
             rest: Places { nodes: &self.rest, obstacles: &[] },
             start: &known.placed,
+            nodes: start,
+            drag: &|surface, at, out| self.drag(surface, interval, at, out),
             end: ended,
             velocity: [before.velocity, velocity].map(|nodes| Places { nodes, obstacles: speed }),
             inverse_mass: &known.inverse_mass,
@@ -236,6 +238,18 @@ impl Stage {
                 speed.push((after - before) / interval.step);
             }
         }
+    }
+
+    /// The velocity (m/s) of the surface of a round obstacle, at a way `out` (m) from a point of its axis at the start of a step, beside that of
+    /// this point.
+    fn drag(&self, surface: usize, interval: Interval, at: DVec3, out: DVec3) -> DVec3 {
+        let Some(solid) = surface.checked_sub(self.bodies).filter(|_| self.surfaces[surface].is_round) else {
+            return DVec3::ZERO;
+        };
+        let Obstacle { pivot, .. } = self.obstacles[solid].obstacle;
+        let [before, after] = [interval.begin, interval.end].map(|time| self.obstacles[solid].obstacle.pose(time));
+        let way = |point: DVec3| after.apply(pivot, before.undo(pivot, point)) - point;
+        (way(at + out) - way(at)) / interval.step
     }
 
     /// How far the points of each surface move from places to others.

@@ -27,6 +27,8 @@ pub(crate) struct Surface {
     pub(super) nodes: Vec<u32>,
     /// Half of the distance (m) that is kept from a surface of the same thickness.
     pub(super) thickness: f64,
+    /// Whether the thickness is the radius of an obstacle.
+    pub(super) is_round: bool,
 }
 
 /// A point, segment or triangle.
@@ -134,7 +136,16 @@ impl Surface {
         nodes.sort_unstable();
         nodes.dedup();
         let lists = |lists: &[Vec<u32>]| lists.iter().map(Vec::as_slice).collect();
-        Self { points, facets, edges, wings: lists(&wings), rings: lists(&rings), nodes, thickness: 0.0 }
+        Self {
+            points,
+            facets,
+            edges,
+            wings: lists(&wings),
+            rings: lists(&rings),
+            nodes,
+            thickness: 0.0,
+            is_round: false,
+        }
     }
 
     /// The mean length of its edges, or of its facets where it has none (m), with points at the given places.

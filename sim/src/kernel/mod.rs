@@ -125,13 +125,17 @@ pub(crate) struct Held<'a> {
     pub(crate) place: &'a Place<'a>,
 }
 
+/// Changes the positions (m) and velocities (m/s) of all nodes at the end of a step of this number that began at the given ones.
+pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync + 'a;
+
+/// How many of some steps nodes can take without meeting, from the step of this number on, and the speed (m/s) up to which they can.
+pub(crate) type Alone<'a> = dyn Fn(u64, Nodes<'_>, u64) -> Option<(u64, f64)> + Sync + 'a;
+
 /// Contact of surfaces.
 #[derive(Clone, Copy)]
 pub(crate) struct Meeting<'a> {
-    /// Changes the positions (m) and velocities (m/s) of all nodes at the end of a step of this number that began at the given ones.
-    pub(crate) meet: &'a (dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync),
-    /// How many of some steps nodes can take without meeting, from the step of this number on, and the speed (m/s) up to which they can.
-    pub(crate) alone: &'a (dyn Fn(u64, Nodes<'_>, u64) -> Option<(u64, f64)> + Sync),
+    pub(crate) meet: &'a Meet<'a>,
+    pub(crate) alone: &'a Alone<'a>,
 }
 
 /// Writes the forces from outside on all nodes (N), which are at positions (m) after a share of the step of this number.

@@ -521,3 +521,30 @@ fn a_tower_rests() {
     let aside = world.state().position.iter().sum::<DVec3>() / 81.0;
     assert!(aside.x.abs().max(aside.z.abs()) < 0.001 * SIDE, "{aside}");
 }
+
+/// A block on two rollers that turn moves along with their surfaces.
+#[test]
+fn rollers_carry_a_block() {
+    let body = block([3, 1, 2]);
+    let roller = |x: f64| Obstacle {
+        shape: Shape::Capsule { from: DVec3::new(x, -0.1, -0.3), to: DVec3::new(x, -0.1, 0.3), radius: 0.045 },
+        motion: Motion::Keys {
+            keys: [(0.0, 0.0), (1.0, -10.0)]
+                .map(|(time, turn)| Key { time, offset: Offset { shift: DVec3::ZERO, rotation: DVec3::Z * turn } })
+                .to_vec(),
+            ease: Ease::Linear,
+            repeat: false,
+        },
+        pivot: DVec3::new(x, -0.1, 0.0),
+        restitution: 0.0,
+        friction: 1.0,
+        friction_of: Default::default(),
+    };
+    let obstacles = (-2..6).map(|at| roller(0.11 * f64::from(at))).collect();
+    let around = Surroundings { gravity: DVec3::Y * -9.81, obstacles, ..with_contacts(0.0, 0.0) };
+    let mut world = together(&[(Arc::clone(&body), still(DVec3::ZERO))], 1e4, 0.02, around);
+    world.advance((0.5 / (0.02 * TAU / 100.0)) as u64);
+    let speed = world.state().velocity.iter().map(|speed| speed.x).sum::<f64>() / body.len() as f64;
+    // The surface moves at 10 /s × .045 m; the bumps between the rollers change that a little.
+    assert!((0.42..0.48).contains(&speed), "{speed}");
+}
