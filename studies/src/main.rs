@@ -214,7 +214,7 @@ impl Name {
                 task(Box::new(study), threads.count(), of.arguments())
             }
             Self::Stress { model, threads } => {
-                let study = Stress { steps: stress::STEPS, models: stress::Model::compared(&model) };
+                let study = Stress { steps: stress::STEPS, models: stress::NamedModel::compared(&model) };
                 task(Box::new(study), threads.count(), repeated("--model", &model))
             }
             Self::Beam { threads } => task(Box::new(Beam::usual()), threads.count(), Vec::new()),

@@ -285,7 +285,7 @@ fn animations_go_on_too() {
     let scene = disc("60").replace("charts", "camera.distance = 1\nlabels");
     let scene = scene.replace("[\"kinetic\"]", "[\"clock\"]");
     [&whole, &place].into_iter().for_each(|place| place.write("scene.toml", &scene));
-    let films = "--animate film.gif --animate film.apng --frames 0-3600x12";
+    let films = "--animate film.gif --animate film.apng --frames 0-1200x12";
     for (options, folder) in [("", "out"), (" --no-frames", "out/.localshape-pictures.partial")] {
         let typed = format!("render scene.toml {films}{options} -o out");
         whole.run(&format!("{typed} --overwrite")).good();

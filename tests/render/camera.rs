@@ -26,13 +26,17 @@ fn parse(text: &str) -> Scene {
     Scene::parse(text, "camera.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A composer that knows the whole course, and frames of the scene at an interval.
-fn film(scene: &Scene, every: u64) -> Vec<(u64, Listed)> {
+/// The whole course of a scene, and its frames at an interval, by a composer that knows the course. It is simulated once.
+fn film(scene: &Scene, every: u64) -> (History, Vec<(u64, Listed)>) {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let composer = Composer::new(scene, &History::new(scene, &runs));
-    let mut runner = Runner::new(scene, &runs);
+    let mut runner = Runner::new(scene, &runs).with_time_series(scene.time_series().unwrap_or_default());
     let frames = (0..=scene.last_frame()).filter(|frame| frame % every == 0);
-    frames.map(|frame| (frame, composer.compose(&runner.frame(frame)))).collect()
+    let frames: Vec<_> = frames.map(|frame| (frame, runner.frame(frame))).collect();
+    runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
+    let history = runner.take_history();
+    let composer = Composer::new(scene, &history);
+    let pictures = frames.iter().map(|(frame, shown)| (*frame, composer.compose(shown))).collect();
+    (history, pictures)
 }
 
 /// The box around the body of a panel: left, top, right and bottom (px from the panel's left upper corner).
@@ -81,10 +85,9 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
             continue;
         }
         let (mut widest, mut highest, mut smallest, mut scale) = (0.0_f32, 0.0_f32, f32::INFINITY, None);
-        let runs: Vec<_> = (0..scene.runs.len()).collect();
-        let diverged = History::new(&scene, &runs).series.into_iter().map(|series| series.divergence.is_some());
-        let diverged: Vec<_> = diverged.collect();
-        for (frame, picture) in film(&scene, 5) {
+        let (history, film) = film(&scene, 5);
+        let diverged: Vec<_> = history.series.into_iter().map(|series| series.divergence.is_some()).collect();
+        for (frame, picture) in film {
             for (panel, run) in picture.panels.iter().zip(0..) {
                 let sides = scene.runs[run].of.iter().map(|&body| scene.bodies[body].side);
                 let metre = panel.sight.element / sides.fold(f64::INFINITY, f64::min) as f32;
@@ -120,7 +123,7 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
 #[test]
 fn a_frame_drawn_alone_is_that_of_its_sequence() {
     let scene = load(&shipped().into_iter().find(|path| path.ends_with("mixed.toml")).expect("a scene"));
-    for (frame, picture) in film(&scene, 50) {
+    for (frame, picture) in film(&scene, 50).1 {
         let composer = Composer::new(&scene, &History::new(&scene, &[0, 1]));
         assert_eq!(composer.compose(&Runner::new(&scene, &[0, 1]).frame(frame)), picture, "{frame}");
     }
@@ -130,7 +133,7 @@ fn a_frame_drawn_alone_is_that_of_its_sequence() {
 #[test]
 fn plates_are_drawn_alike_in_all_panels_and_frames() {
     let scene = load(&shipped().into_iter().find(|path| path.ends_with("obstacles.toml")).expect("a scene"));
-    let film = film(&scene, 20);
+    let (_, film) = film(&scene, 20);
     let first = &film[0].1.panels[0].obstacles.panes;
     assert!(!first.is_empty());
     for (frame, picture) in &film {
@@ -184,7 +187,7 @@ fn bodies_leave_room_to_obstacles_near_them() {
             run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
             obstacle = [{obstacle}]"
         ));
-        film(&scene, 1).swap_remove(0).1
+        film(&scene, 1).1.swap_remove(0).1
     };
     let alone = seen("");
     for ball in ["centre = [0.16, 0.1, 0], radius = 0.04", "centre = [0.20, 0.1, 0], radius = 0.08"] {

@@ -79,7 +79,7 @@ pub(crate) struct Timed {
     pub(crate) error: f64,
     /// Half of the largest stable step, which `step = "auto"` would take, or that of a model that steps itself (s).
     pub(crate) step: f64,
-    /// What [`Beam::softer`] has.
+    /// What [`Cantilever::softer`] has.
     pub(crate) softer: Vec<f64>,
     /// Time of a simulated second (s).
     pub(crate) time: Spread,
@@ -99,21 +99,21 @@ pub(crate) struct Results {
 pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
     let corotational = MODELS.iter().find(|model| model.name == "corotational")?;
     // Without contraction the width does not matter to hexahedra, so that one cell suffices.
-    let fine = study.fine.map(|across| Beam::new(corotational, [across, 1]).filter(|_| watch(1)));
+    let fine = study.fine.map(|across| Cantilever::new(corotational, [across, 1]).filter(|_| watch(1)));
     let [Some(coarse), Some(fine)] = fine else { return None };
     let parts = study.fine.map(|across| f64::from(across * across));
     let reference = (parts[1] * fine.deflection - parts[0] * coarse.deflection) / (parts[1] - parts[0]);
     let mut beams = Vec::new();
     for model in Time::models() {
         for &across in &study.across {
-            beams.extend(Beam::new(model, [across; 2]).map(|beam| (*model, across, beam)));
+            beams.extend(Cantilever::new(model, [across; 2]).map(|beam| (*model, across, beam)));
             if !watch(1) {
                 return None;
             }
         }
     }
     let mut worlds: Vec<_> = beams.iter().map(|(.., beam)| beam.world()).collect();
-    let steps = |beam: &Beam| (study.turn / beam.bar.body.elements().len() as u64).max(1);
+    let steps = |beam: &Cantilever| (study.turn / beam.bar.body.elements().len() as u64).max(1);
     // The first access to memory is not timed.
     worlds.iter_mut().for_each(|world| world.advance(1));
     let times = take_turns(worlds.len(), study.rounds, watch, |at| {
@@ -134,7 +134,7 @@ pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
 }
 
 /// The beam with a model.
-struct Beam {
+struct Cantilever {
     bar: Bar,
     model: Arc<dyn ElasticModel>,
     held: Grip,
@@ -145,7 +145,7 @@ struct Beam {
     softer: Vec<f64>,
 }
 
-impl Beam {
+impl Cantilever {
     /// A beam of cells across its depth and width; `None` if the model does not take it or has no balance.
     fn new(model: &Model, [deep, wide]: [u32; 2]) -> Option<Self> {
         /// Parts of the load, each from the balance before.

@@ -39,8 +39,8 @@ impl Study for Stability {
     }
 
     fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings> {
-        let known = |cell: &Cell| Outcome::read(notes.known(&cell.key())?);
-        let done = |cell: &Cell| notes.add(&cell.key(), &cell.outcome.note());
+        let known = |cell: &MapCell| Outcome::read(notes.known(&cell.key())?);
+        let done = |cell: &MapCell| notes.add(&cell.key(), &cell.outcome.note());
         let results = measure(self.protocol.clone(), &self.scene, &known, &done, watch)?;
         let (text, tables) = (results.text(), vec![("stability", results.table())]);
         Some(Findings { text, tables, page: Some(results.page()) })
@@ -131,7 +131,7 @@ pub(crate) enum Outcome {
 
 /// A run with one stiffness and one step.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Cell {
+pub(crate) struct MapCell {
     /// The number of the run.
     pub(crate) run: usize,
     /// The stiffness over the mass of the lightest node (1/s²).
@@ -139,7 +139,7 @@ pub(crate) struct Cell {
     /// The factors of the speed of impacts and of the damping ratio.
     pub(crate) speed: f64,
     pub(crate) damping: f64,
-    /// The step as a share of the predicted limit, or of [`Grid::unit`] if there is none.
+    /// The step as a share of the predicted limit, or of [`Axes::unit`] if there is none.
     pub(crate) share: f64,
     /// Time step (s).
     pub(crate) step: f64,
@@ -148,7 +148,7 @@ pub(crate) struct Cell {
 
 /// The common values of the cells of a run with one damping ratio.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Grid {
+pub(crate) struct Axes {
     pub(crate) run: usize,
     pub(crate) damping: f64,
     /// `k/m` of the scene (1/s²).
@@ -162,7 +162,7 @@ pub(crate) struct Grid {
     pub(crate) stretched: Option<f64>,
 }
 
-impl Grid {
+impl Axes {
     fn new(scene: &Scene, run: usize, damping: f64) -> Option<Self> {
         let mut scene = scene.clone();
         let model = scaled(&scene.runs[run], 1.0, damping)?;
@@ -189,9 +189,9 @@ impl Grid {
 pub(crate) struct Results {
     pub(crate) protocol: Protocol,
     pub(crate) scene: Scene,
-    pub(crate) grids: Vec<Grid>,
-    /// In the order of grids, speeds, stiffnesses and shares.
-    pub(crate) cells: Vec<Cell>,
+    pub(crate) axes: Vec<Axes>,
+    /// In the order of the axes, speeds, stiffnesses and shares.
+    pub(crate) cells: Vec<MapCell>,
 }
 
 /// Simulates the cells for which `known` has no outcome with the rayon thread pool of the caller, and calls `done` with each; `None` if
@@ -199,25 +199,25 @@ pub(crate) struct Results {
 pub(crate) fn measure(
     protocol: Protocol,
     scene: &Scene,
-    known: &(dyn Fn(&Cell) -> Option<Outcome> + Sync),
-    done: &(dyn Fn(&Cell) + Sync),
+    known: &(dyn Fn(&MapCell) -> Option<Outcome> + Sync),
+    done: &(dyn Fn(&MapCell) + Sync),
     watch: &Watch<'_>,
 ) -> Option<Results> {
     let studied = (0..scene.runs.len()).filter(|&run| scene.runs[run].tolerance.is_none());
-    let each = |run: usize| protocol.dampings.iter().filter_map(move |&damping| Grid::new(scene, run, damping));
-    let grids: Vec<Grid> = studied.flat_map(each).collect();
+    let each = |run: usize| protocol.dampings.iter().filter_map(move |&damping| Axes::new(scene, run, damping));
+    let axes: Vec<Axes> = studied.flat_map(each).collect();
     let mut cells = Vec::new();
-    for grid in &grids {
+    for axes in &axes {
         for (&speed, &stiffness) in
             protocol.speeds.iter().flat_map(|speed| protocol.stiffnesses.iter().map(move |k| (speed, k)))
         {
-            cells.extend(protocol.shares.iter().map(|&share| Cell {
-                run: grid.run,
-                rate: grid.rate * stiffness,
+            cells.extend(protocol.shares.iter().map(|&share| MapCell {
+                run: axes.run,
+                rate: axes.rate * stiffness,
                 speed,
-                damping: grid.damping,
+                damping: axes.damping,
                 share,
-                step: share * grid.unit / stiffness.sqrt(),
+                step: share * axes.unit / stiffness.sqrt(),
                 outcome: Outcome::Whole,
             }));
         }
@@ -231,7 +231,7 @@ pub(crate) fn measure(
         }
         watch(1).then_some(())
     })?;
-    Some(Results { protocol, scene: scene.clone(), grids, cells })
+    Some(Results { protocol, scene: scene.clone(), axes, cells })
 }
 
 /// The model of a run with its stiffness and its damping multiplied; `None` for a model of another program.
@@ -243,7 +243,7 @@ fn scaled(run: &Run, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticMode
 }
 
 /// Simulates a cell, until it diverges; `None` if `watch` stops it.
-fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
+fn outcome(scene: &Scene, cell: &MapCell, watch: &Watch<'_>) -> Option<Outcome> {
     /// Steps between two checks.
     const STRETCH: u64 = 4096;
     let mut scene = scene.clone();
@@ -251,7 +251,7 @@ fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
     let run = &mut scene.runs[cell.run];
     run.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
     let stiffness = cell.rate * run.body().lightest() / run.models[0].properties(run.body()).stiffness;
-    run.models[0] = scaled(run, stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
+    run.models[0] = scaled(run, stiffness, stiffness.sqrt() * cell.damping).expect("axes are of models that can be");
     run.step = cell.step;
     let mut world = scene.world(cell.run);
     let mut left = (scene.duration / cell.step).ceil() as u64;
@@ -272,30 +272,30 @@ fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
 }
 
 impl Results {
-    /// The cells of a grid with one speed of impacts, column by column.
-    pub(crate) fn of<'a>(&'a self, grid: &'a Grid, speed: f64) -> impl Iterator<Item = &'a Cell> {
-        let is_of = move |cell: &&Cell| cell.run == grid.run && cell.damping == grid.damping && cell.speed == speed;
+    /// The cells of axes with one speed of impacts, column by column.
+    pub(crate) fn of<'a>(&'a self, axes: &'a Axes, speed: f64) -> impl Iterator<Item = &'a MapCell> {
+        let is_of = move |cell: &&MapCell| cell.run == axes.run && cell.damping == axes.damping && cell.speed == speed;
         self.cells.iter().filter(is_of)
     }
 
-    /// The grids with the speeds of their maps.
-    pub(crate) fn maps(&self) -> impl Iterator<Item = (&Grid, f64)> {
-        self.grids.iter().flat_map(|grid| self.protocol.speeds.iter().map(move |&speed| (grid, speed)))
+    /// The axes with the speeds of their maps.
+    pub(crate) fn maps(&self) -> impl Iterator<Item = (&Axes, f64)> {
+        self.axes.iter().flat_map(|axes| self.protocol.speeds.iter().map(move |&speed| (axes, speed)))
     }
 
     /// The name of a map, its impacts and damping if the protocol has several, and the model.
-    pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 3] {
-        let run = &self.scene.runs[grid.run];
+    pub(crate) fn words(&self, axes: &Axes, speed: f64) -> [String; 3] {
+        let run = &self.scene.runs[axes.run];
         let Protocol { speeds, dampings, .. } = &self.protocol;
         let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", short(speed)));
-        let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(grid.damping)));
+        let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(axes.damping)));
         let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
         [run.name.clone(), conditions.join(", "), description(run.models[0].as_ref(), run.body())]
     }
 
     /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.
-    fn up_to(&self, grid: &Grid, speed: f64, is_good: impl Fn(Outcome) -> bool) -> f64 {
-        let bad = self.of(grid, speed).filter(|cell| !is_good(cell.outcome)).map(|cell| cell.share);
+    fn up_to(&self, axes: &Axes, speed: f64, is_good: impl Fn(Outcome) -> bool) -> f64 {
+        let bad = self.of(axes, speed).filter(|cell| !is_good(cell.outcome)).map(|cell| cell.share);
         let least = bad.fold(f64::INFINITY, f64::min);
         self.protocol.shares.iter().copied().filter(|&share| share < least).fold(0.0, f64::max)
     }

@@ -1,27 +1,27 @@
 //! A map for each run, damping and speed.
 
 use super::text::short;
-use super::{Cell, Grid, Outcome, Results};
+use super::{Axes, MapCell, Outcome, Results};
 use crate::page::{Contents, Map, Page, Tile};
 
 impl Results {
     pub(super) fn page(&self) -> Page {
         /// Shares at which steps are written.
         const TICKS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
-        let map = |(grid, speed): (&Grid, f64)| {
-            let cells: Vec<_> = self.of(grid, speed).collect();
+        let map = |(axes, speed): (&Axes, f64)| {
+            let cells: Vec<_> = self.of(axes, speed).collect();
             let mut across: Vec<f64> = cells.iter().map(|cell| cell.rate).collect();
             across.dedup();
-            let tile = |cell: &&Cell| match cell.outcome {
+            let tile = |cell: &&MapCell| match cell.outcome {
                 Outcome::Whole => Tile::Whole,
                 Outcome::TurnedOver(_) => Tile::TurnedOver,
                 Outcome::Diverged => Tile::Diverged,
             };
-            let tick = |share: f64| (share, [short(share), format!("T/{:.1}", grid.steps_per_cycle(share))]);
-            let limit = grid.limit.map(|_| (1.0, "predicted limit"));
-            let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
+            let tick = |share: f64| (share, [short(share), format!("T/{:.1}", axes.steps_per_cycle(share))]);
+            let limit = axes.limit.map(|_| (1.0, "predicted limit"));
+            let stretched = axes.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
             // The conditions distinguish several maps of a run; the model is in the tables.
-            let [name, conditions, model] = self.words(grid, speed);
+            let [name, conditions, model] = self.words(axes, speed);
             Map {
                 name: [name, if conditions.is_empty() { model } else { conditions }],
                 across,
@@ -31,7 +31,7 @@ impl Results {
                 lines: limit.into_iter().chain(stretched).collect(),
                 axes: [
                     "k/m (1/s²)".to_owned(),
-                    if grid.limit.is_some() { "ΔT, as a share of the limit" } else { "ΔT, as a share of T/π" }
+                    if axes.limit.is_some() { "ΔT, as a share of the limit" } else { "ΔT, as a share of T/π" }
                         .to_owned(),
                     "ΔT".to_owned(),
                 ],
@@ -49,7 +49,7 @@ impl Results {
     }
 }
 
-impl Grid {
+impl Axes {
     /// The cycle T in steps, for a share of the unit.
     fn steps_per_cycle(&self, share: f64) -> f64 {
         1.0 / (share * self.limit.unwrap_or(std::f64::consts::FRAC_1_PI))

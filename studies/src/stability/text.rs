@@ -1,6 +1,6 @@
 //! The results as text and as a table, and the notes of cells.
 
-use super::{Cell, Grid, Outcome, Protocol, Results};
+use super::{Axes, MapCell, Outcome, Protocol, Results};
 use crate::table::{Table, or_dash, typed};
 
 impl Outcome {
@@ -37,7 +37,7 @@ impl Outcome {
     }
 }
 
-impl Cell {
+impl MapCell {
     /// The parameters of the cell, which no other cell of the study has.
     pub(super) fn key(&self) -> String {
         let Self { run, rate, speed, damping, share, step, .. } = self;
@@ -48,15 +48,15 @@ impl Cell {
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
-        let row = |(grid, speed): (&Grid, f64)| {
-            let [name, conditions, model] = self.words(grid, speed);
+        let row = |(axes, speed): (&Axes, f64)| {
+            let [name, conditions, model] = self.words(axes, speed);
             let up_to =
-                |is_good: fn(Outcome) -> bool| Some(self.up_to(grid, speed, is_good)).filter(|&share| share > 0.0);
+                |is_good: fn(Outcome) -> bool| Some(self.up_to(axes, speed, is_good)).filter(|&share| share > 0.0);
             [
                 ("run", name.into()),
                 ("model", if conditions.is_empty() { model } else { format!("{conditions}, {model}") }.into()),
-                ("predicted limit", or_dash(grid.limit.map(|limit| format!("T/{}", short(1.0 / limit))))),
-                ("stretched springs", or_dash(grid.stretched.map(short))),
+                ("predicted limit", or_dash(axes.limit.map(|limit| format!("T/{}", short(1.0 / limit))))),
+                ("stretched springs", or_dash(axes.stretched.map(short))),
                 ("none diverges up to", or_dash(up_to(|outcome| outcome != Outcome::Diverged).map(short))),
                 ("all are whole up to", or_dash(up_to(|outcome| outcome == Outcome::Whole).map(short))),
             ]
@@ -80,10 +80,10 @@ impl Results {
 
     /// All cells, with all digits.
     pub(super) fn table(&self) -> Table {
-        let row = |cell: &Cell| {
+        let row = |cell: &MapCell| {
             let run = &self.scene.runs[cell.run];
-            let grid = self.grids.iter().find(|grid| grid.run == cell.run && grid.damping == cell.damping);
-            let has_limit = grid.is_some_and(|grid| grid.limit.is_some());
+            let axes = self.axes.iter().find(|axes| axes.run == cell.run && axes.damping == cell.damping);
+            let has_limit = axes.is_some_and(|axes| axes.limit.is_some());
             [
                 ("run", run.name.as_str().into()),
                 ("integrator", typed(&run.integrator).into()),

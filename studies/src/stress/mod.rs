@@ -20,7 +20,7 @@ pub(crate) struct Stress {
     /// Steps of bodies that rest or spin.
     pub(crate) steps: u64,
     /// The models that are compared.
-    pub(crate) models: Vec<Model>,
+    pub(crate) models: Vec<NamedModel>,
 }
 
 /// The usual number of steps.
@@ -43,14 +43,14 @@ impl Study for Stress {
 
 /// A model and its name in tables.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Model {
+pub(crate) struct NamedModel {
     pub(crate) name: String,
     kind: String,
     /// Keys besides its stiffness and its damping.
     keys: Map<String, Value>,
 }
 
-impl Model {
+impl NamedModel {
     fn new(name: &str, kind: &str, keys: &[(&str, &str)]) -> Self {
         let keys = keys.iter().map(|&(key, value)| (key.to_owned(), json!(value))).collect();
         Self { name: name.to_owned(), kind: kind.to_owned(), keys }
@@ -108,7 +108,7 @@ pub(crate) struct Outcome {
 
 /// The outcomes of a trial, one for each model that takes the body.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct Tried {
     pub(crate) group: &'static str,
     pub(crate) name: String,
     pub(crate) elements: usize,
@@ -120,8 +120,8 @@ pub(crate) struct Row {
 /// The findings, which do not depend on the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Results {
-    pub(crate) models: Vec<Model>,
-    pub(crate) rows: Vec<Row>,
+    pub(crate) models: Vec<NamedModel>,
+    pub(crate) rows: Vec<Tried>,
 }
 
 /// The greatest energy over the initial one: semi-implicit Euler oscillates at half of its limit, and rebounds add to
@@ -133,11 +133,11 @@ const MOST_CHANGE: f64 = 1e-9;
 const MOST_CREEP: f64 = 1e-3;
 
 /// Makes all trials on the thread pool of the caller; `None` if `watch` stops it.
-pub(crate) fn measure(steps: u64, models: &[Model], watch: &Watch<'_>) -> Option<Results> {
+pub(crate) fn measure(steps: u64, models: &[NamedModel], watch: &Watch<'_>) -> Option<Results> {
     let trials = trials(steps);
     let pairs: Vec<_> = trials.iter().flat_map(|trial| models.iter().map(move |model| (trial, model))).collect();
     let mut outcomes = each(&pairs, watch, |(trial, model)| trial.outcome(model))?.into_iter();
-    let row = |trial: Trial| Row {
+    let row = |trial: Trial| Tried {
         group: trial.group,
         name: trial.name,
         elements: trial.body.elements().len(),
@@ -148,7 +148,7 @@ pub(crate) fn measure(steps: u64, models: &[Model], watch: &Watch<'_>) -> Option
     Some(Results { models: models.to_vec(), rows: trials.into_iter().map(row).collect() })
 }
 
-impl Row {
+impl Tried {
     /// The promises that the default model breaks.
     pub(crate) fn broken(&self) -> Vec<String> {
         let one = self.outcomes[0].as_ref().expect("the shape model takes all bodies");
@@ -183,7 +183,7 @@ impl Row {
 
 impl Trial {
     /// `None` for a model that does not take the body.
-    fn world(&self, model: &Model, integrator: Integrator, start: State) -> Option<World> {
+    fn world(&self, model: &NamedModel, integrator: Integrator, start: State) -> Option<World> {
         let alike = Alike::on_body(self.stiffness, &self.body);
         let model = alike.model(&self.body, &model.kind, self.damping, model.keys.clone())?;
         let Self { body, around, step, .. } = self;
@@ -196,7 +196,7 @@ impl Trial {
         Some(World::new(body, start, model.as_ref(), around.clone(), stepping))
     }
 
-    fn outcome(&self, model: &Model) -> Option<Outcome> {
+    fn outcome(&self, model: &NamedModel) -> Option<Outcome> {
         /// The number of checks of the state.
         const LOOKS: u64 = 64;
         let mut world = self.world(model, Integrator::default(), self.start.clone())?;
@@ -234,7 +234,7 @@ impl Trial {
 
     /// The greatest difference of a height from the body at rest on its side, as a part of a side. Heights are compared
     /// in order, so a cube may lie on any side.
-    fn unsettled(&self, model: &Model, state: &State) -> Option<f64> {
+    fn unsettled(&self, model: &NamedModel, state: &State) -> Option<f64> {
         let heights = |state: &State| {
             let mut heights: Vec<_> = state.position.iter().map(|at| at.y).collect();
             heights.sort_by(f64::total_cmp);

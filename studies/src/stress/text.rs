@@ -1,6 +1,6 @@
 //! The results as text and as a table.
 
-use super::{Outcome, Promise, Results, Row};
+use super::{Outcome, Promise, Results, Tried};
 use crate::table::{Cell, Table};
 
 /// The shape error of a body that counts as restored.
@@ -9,15 +9,15 @@ const RESTORED: f64 = 1e-3;
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
-        let words = |row: &Row, one: &Option<Outcome>| match one {
+        let words = |row: &Tried, one: &Option<Outcome>| match one {
             Some(outcome) => row.words(outcome).into(),
             None => Cell::from("does not take it"),
         };
-        let row = |row: &Row| -> Vec<Cell> {
+        let row = |row: &Tried| -> Vec<Cell> {
             let name = Cell::from(row.name.as_str());
             [name].into_iter().chain(row.outcomes.iter().map(|one| words(row, one))).collect()
         };
-        let table = |group: &[Row]| {
+        let table = |group: &[Tried]| {
             let models = self.models.iter().map(|model| model.name.clone());
             let table = Table::wide(&[group[0].group], models, group.iter().map(row).collect());
             table.markdown(table.heads.len())
@@ -61,7 +61,7 @@ impl Results {
     }
 }
 
-impl Row {
+impl Tried {
     /// The outcome in a few words.
     fn words(&self, one: &Outcome) -> String {
         let size = |number: f64| if number < 0.01 { format!("{number:.0e}") } else { format!("{number:.2}") };

@@ -18,7 +18,7 @@ use localshape::Scene;
 use localshape::internals::random_unit;
 use localshape::sim::model::Report;
 use localshape::sim::{Assembly, State, Status};
-use printed::{Printed, ROWS, Row, STIFFNESSES};
+use printed::{Printed, PrintedRow, ROWS, STIFFNESSES};
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ impl Study for Table1 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub(crate) solver: &'static str,
-    pub(crate) row: Row,
+    pub(crate) row: PrintedRow,
     /// Index of its k/m in [`STIFFNESSES`].
     pub(crate) stiffness: usize,
 }

@@ -11,7 +11,7 @@ pub(crate) struct Printed {
 
 /// One row of the paper's Table 1 for all its k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct PrintedRow {
     /// Its letter.
     pub(crate) name: &'static str,
     /// "Number of iteration": the number of passes, each of which solves Eq. (15), at each evaluation.
@@ -24,7 +24,7 @@ pub(crate) struct Row {
 pub(crate) const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
 
 /// The paper's Table 1 as printed.
-pub(crate) const ROWS: [Row; 4] = {
+pub(crate) const ROWS: [PrintedRow; 4] = {
     /// A value that was too small for the paper to measure.
     const LESS: f64 = 0.0;
     const fn measured(number: f64) -> Option<f64> {
@@ -47,10 +47,10 @@ pub(crate) const ROWS: [Row; 4] = {
         [case(0.006, [0.000493, 0.00211, 0.060352]), case(0.002, [LESS, 0.000001, 0.000017]), case(0.0006, [LESS; 3])];
     let d = [case(0.006, [LESS, LESS, 0.000001]), case(0.002, [LESS; 3]), case(0.0006, [LESS; 3])];
     [
-        Row { name: "A", passes: 1, cases: a },
-        Row { name: "B", passes: 1, cases: b },
-        Row { name: "C", passes: 2, cases: c },
-        Row { name: "D", passes: 3, cases: d },
+        PrintedRow { name: "A", passes: 1, cases: a },
+        PrintedRow { name: "B", passes: 1, cases: b },
+        PrintedRow { name: "C", passes: 2, cases: c },
+        PrintedRow { name: "D", passes: 3, cases: d },
     ]
 };
 

@@ -30,7 +30,7 @@ fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
     }
     // Four times the stiffness, half the step.
     assert_eq!(results.cells[0].step, 4.0 * results.cells[3].step);
-    assert_eq!((results.grids[1].limit, results.grids[1].stretched), (None, None));
+    assert_eq!((results.axes[1].limit, results.axes[1].stretched), (None, None));
     assert!(results.cells.iter().all(|cell| cell.run == 0 || cell.outcome != Outcome::Diverged));
 }
 
@@ -39,19 +39,19 @@ fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
 fn goes_on_where_it_was_interrupted() {
     let (protocol, scene) = small();
     let made = Mutex::new(Vec::new());
-    let keep = |cell: &Cell| made.lock().unwrap().push(cell.clone());
+    let keep = |cell: &MapCell| made.lock().unwrap().push(cell.clone());
     let left = std::sync::atomic::AtomicI64::new(4);
     let stop = |more: u64| left.fetch_sub(more as i64, std::sync::atomic::Ordering::Relaxed) > 0;
     assert!(measure(protocol.clone(), &scene, &|_| None, &keep, &stop).is_none());
     let made = made.into_inner().unwrap();
     assert!(!made.is_empty() && (made.len() as u64) < protocol.work(&scene));
     let again = Mutex::new(0);
-    let known = |cell: &Cell| made.iter().find(|one| one.key() == cell.key()).map(|one| one.outcome);
+    let known = |cell: &MapCell| made.iter().find(|one| one.key() == cell.key()).map(|one| one.outcome);
     let resumed = measure(protocol.clone(), &scene, &known, &|_| *again.lock().unwrap() += 1, &|_| true);
     let whole = measure(protocol.clone(), &scene, &|_| None, &|_| (), &|_| true);
     assert_eq!(*again.lock().unwrap() + made.len() as u64, protocol.work(&scene));
     let [resumed, whole] = [resumed, whole].map(|results| results.expect("it is never stopped"));
-    assert_eq!((resumed.grids, resumed.cells), (whole.grids, whole.cells));
+    assert_eq!((resumed.axes, resumed.cells), (whole.axes, whole.cells));
 }
 
 #[test]
@@ -83,11 +83,11 @@ fn the_largest_share_is_below_every_bad_cell() {
         [Outcome::Whole, Outcome::TurnedOver(1), Outcome::Whole],
     ];
     results.cells.iter_mut().zip(outcomes.as_flattened()).for_each(|(cell, &outcome)| cell.outcome = outcome);
-    let grid = &results.grids[0];
-    assert_eq!(results.up_to(grid, 1.0, |outcome| outcome != Outcome::Diverged), 0.9);
-    assert_eq!(results.up_to(grid, 1.0, |outcome| outcome == Outcome::Whole), 0.3);
-    assert_eq!(results.up_to(grid, 1.0, |_| true), 1.1);
-    assert_eq!(results.up_to(grid, 1.0, |_| false), 0.0);
+    let axes = &results.axes[0];
+    assert_eq!(results.up_to(axes, 1.0, |outcome| outcome != Outcome::Diverged), 0.9);
+    assert_eq!(results.up_to(axes, 1.0, |outcome| outcome == Outcome::Whole), 0.3);
+    assert_eq!(results.up_to(axes, 1.0, |_| true), 1.1);
+    assert_eq!(results.up_to(axes, 1.0, |_| false), 0.0);
 }
 
 /// Impacts are twice as fast after a fall with four times the gravity.

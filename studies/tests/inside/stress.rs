@@ -1,12 +1,12 @@
 //! The stress suite in its fast form: the promises of every trial.
 
-use super::{Model, Outcome, Row, measure};
+use super::{NamedModel, Outcome, Tried, measure};
 use crate::reading::documented;
 
 /// All trials with every model, with 20 000 steps instead of a million for bodies that rest or spin.
 #[test]
 fn the_shape_model_keeps_what_it_promises_and_no_model_gives_nan() {
-    let results = measure(20_000, &Model::compared(&[]), &|_| true).expect("it is never stopped");
+    let results = measure(20_000, &NamedModel::compared(&[]), &|_| true).expect("it is never stopped");
     let broken: Vec<_> = results.rows.iter().filter(|row| !row.broken().is_empty()).collect();
     let broken: Vec<_> =
         broken.iter().map(|row| format!("{}, {}: {}", row.group, row.name, row.broken().join("; "))).collect();
@@ -26,8 +26,9 @@ fn the_shape_model_keeps_what_it_promises_and_no_model_gives_nan() {
 fn every_model_is_tried_by_its_name() {
     let kinds = crate::models::kinds();
     assert!(kinds.len() > 5 && kinds.contains(&"corotational".to_owned()), "{kinds:?}");
-    let results = measure(2000, &Model::compared(&kinds), &|_| true).expect("it is never stopped");
-    let broken = |row: &Row| row.broken().into_iter().filter(|words| words.contains("not finite")).collect::<Vec<_>>();
+    let results = measure(2000, &NamedModel::compared(&kinds), &|_| true).expect("it is never stopped");
+    let broken =
+        |row: &Tried| row.broken().into_iter().filter(|words| words.contains("not finite")).collect::<Vec<_>>();
     assert!(results.rows.iter().all(|row| broken(row).is_empty()), "{}", results.text());
     let on_cubes = results.rows.iter().find(|row| row.name == "a mirror image").expect("it is a trial");
     assert!(on_cubes.outcomes.iter().all(Option::is_some), "all models take cubes: {on_cubes:?}");
