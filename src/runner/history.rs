@@ -299,6 +299,7 @@ mod tests {
             let bodies: String = bodies.iter().enumerate().map(body).collect();
             let text = format!(
                 "gravity = [0, -9.8, 0]
+                contact = {{ rule = 'nodes' }}
                 time = {{ duration = 0.1, step = 1e-3, frames_per_second = 20 }}
                 {bodies}
                 [[obstacle]]

@@ -137,7 +137,7 @@ fn wrong_words() {
     place.bad("stability adaptive.toml", 2, &["choose their own steps, so there is nothing to map"]);
     let bodies = SMALL.replace("[body]", "[[body]]\nname = \"one\"").replace(
         "[[run]]\nname = \"Local",
-        "[[body]]\nname = \"other\"\nlattice = { cells = [1, 1, 1], side = 0.1 }\n[[run]]\nname = \"Local",
+        "[[body]]\nname = \"other\"\nlattice = { cells = [1, 1, 1], side = 0.1 }\noffset = [9, 0, 0]\n[[run]]\nname = \"Local",
     );
     place.write("bodies.toml", &bodies);
     for study in ["stability", "work-precision"] {

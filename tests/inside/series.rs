@@ -32,8 +32,10 @@ fn one_range_holds_all_runs_and_zero() {
 /// More moments than bodies, so that neither is taken for the other.
 #[test]
 fn each_of_several_bodies_has_a_curve_over_all_times() {
-    let bodies = ["one", "other"]
-        .map(|name| format!("[[body]]\nname = '{name}'\nlattice = {{ cells = [1, 1, 1], side = 0.1 }}\n"));
+    let bodies = [("one", 0.0), ("other", 0.3)].map(|(name, x)| {
+        let lattice = "lattice = { cells = [1, 1, 1], side = 0.1 }";
+        format!("[[body]]\nname = '{name}'\n{lattice}\noffset = [{x:?}, 0, 0]\n")
+    });
     let text = format!(
         "time = {{ duration = 0.1, frames_per_second = 20 }}\n{}[[run]]\nname = 'run'\n\
          model = {{ kind = 'shape-based', stiffness = 1e4 }}",

@@ -14,6 +14,7 @@ use localshape::sim::{Divergence, Status};
 use std::collections::HashMap;
 
 const WORLD: &str = "
+    contact = { rule = 'nodes' }
     time = { duration = 1, step = 'T/50', frames_per_second = 50 }
     run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e3 } }]
 ";
