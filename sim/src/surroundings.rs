@@ -1,6 +1,6 @@
 //! What acts on bodies from outside: gravity, forces on nodes, obstacles and kinematic constraints.
 
-use super::contact::{Contacts, Obstacle, Shape};
+use super::contact::{Contacts, Obstacle, Shape, Side};
 use super::grip::Grip;
 use super::motion::{Motion, Offset};
 use glam::DVec3;
@@ -48,7 +48,7 @@ impl fmt::Debug for dyn Load {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct WrongSurroundings {
-    /// What is wrong: a `node`, an `obstacle`, a `grip`, or `gravity`.
+    /// What is wrong: a `node`, an `obstacle`, a `grip`, a `contact` (of a body, or a pair), or `gravity`.
     pub of: &'static str,
     /// Its number, counted from 0.
     pub at: usize,
@@ -80,6 +80,11 @@ impl Surroundings {
         };
         for (at, obstacle) in self.obstacles.iter().enumerate() {
             fault_of_obstacle(obstacle).map_or(Ok(()), Err).map_err(value("obstacle", at))?;
+        }
+        if let Some((at, found)) =
+            self.contacts.as_ref().and_then(|contacts| fault_of_contacts(contacts, self.obstacles.len()))
+        {
+            return Err(value("contact", at)(found));
         }
         for (at, grip) in self.grips.iter().enumerate() {
             check_nodes(&format!("grip {at}"), &grip.nodes, nodes)?;
@@ -159,6 +164,36 @@ fn fault_of_obstacle(obstacle: &Obstacle) -> Option<Fault> {
         wrong.then(|| ("friction", friction.to_string(), "a finite number of 0 or more"))
     };
     of_shape.or_else(|| vector("pivot", pivot)).or_else(bounce).or_else(rough).or_else(|| fault_of_motion(motion))
+}
+
+/// The first mistake, and the number of the body or of the pair with it.
+fn fault_of_contacts(contacts: &Contacts, obstacles: usize) -> Option<(usize, Fault)> {
+    let bounce = |value: f64| {
+        let wrong = !(0.0..=1.0).contains(&value);
+        wrong.then(|| ("restitution", value.to_string(), "a number from 0 to 1"))
+    };
+    let rough = |value: f64| {
+        let wrong = !(value >= 0.0 && value.is_finite());
+        wrong.then(|| ("friction", value.to_string(), "a finite number of 0 or more"))
+    };
+    let thick = |value: f64| {
+        let wrong = !(value > 0.0 && value.is_finite());
+        wrong.then(|| ("thickness", value.to_string(), "a finite number above 0 (m)"))
+    };
+    let usual = bounce(contacts.restitution).or_else(|| rough(contacts.friction)).map(|fault| (0, fault));
+    let of_bodies = || (0..).zip(&contacts.bodies).find_map(|(at, body)| Some((at, thick(body.thickness?)?)));
+    let of_pairs = || {
+        (0..).zip(&contacts.pairs).find_map(|(at, pair)| {
+            let is_there = |side: &Side| !matches!(side, Side::Obstacle(number) if *number >= obstacles);
+            let missing = || {
+                let side = pair.of.iter().find(|side| !is_there(side))?;
+                Some(("side", format!("{side:?}"), "a body or an obstacle that is there"))
+            };
+            let fault = pair.restitution.and_then(bounce).or_else(|| pair.friction.and_then(rough));
+            Some((at, fault.or_else(|| pair.thickness.and_then(thick)).or_else(missing)?))
+        })
+    };
+    usual.or_else(of_bodies).or_else(of_pairs)
 }
 
 fn fault_of_grip(grip: &Grip) -> Option<Fault> {

@@ -5,7 +5,7 @@ use localshape_sim::model::ElasticModel;
 use localshape_sim::model::shape_based::ShapeBased;
 use localshape_sim::{
     Body, BodyContact, Contacts, Crew, Dimension, Ease, IndexLists, Integrator, Kernel, Key, Motion, Obstacle, Offset,
-    Shape, State, Status, Stepping, Surroundings, World,
+    PairContact, Shape, Side, State, Status, Stepping, Surroundings, World,
 };
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -520,6 +520,32 @@ fn a_tower_rests() {
     }
     let aside = world.state().position.iter().sum::<DVec3>() / 81.0;
     assert!(aside.x.abs().max(aside.z.abs()) < 0.001 * SIDE, "{aside}");
+}
+
+/// What a world does not take tells what is wrong.
+#[test]
+fn wrong_contacts_are_told() {
+    let told = |contacts: Contacts| {
+        let around = Surroundings { contacts: Some(contacts), ..Surroundings::default() };
+        around.check(8).expect_err("a mistake").to_string()
+    };
+    let usual = Contacts::default;
+    assert_eq!(
+        told(Contacts { restitution: 1.5, ..usual() }),
+        "the restitution of contact 0 is 1.5; expected a number from 0 to 1"
+    );
+    assert!(told(Contacts { friction: f64::NAN, ..usual() }).starts_with("the friction of contact 0 is NaN"));
+    let thin = BodyContact { thickness: Some(-0.1), itself: false };
+    let bodies = vec![BodyContact::default(), thin];
+    assert_eq!(
+        told(Contacts { bodies, ..usual() }),
+        "the thickness of contact 1 is -0.1; expected a finite number above 0 (m)"
+    );
+    let of = [Side::Body(0), Side::Obstacle(2)];
+    let pair = PairContact { of, restitution: None, friction: None, thickness: None };
+    assert!(told(Contacts { pairs: vec![pair], ..usual() }).contains("Obstacle(2)"));
+    let fine = Surroundings { contacts: Some(usual()), ..Surroundings::default() };
+    assert_eq!(fine.check(8), Ok(()));
 }
 
 /// A block on two rollers that turn moves along with their surfaces.
