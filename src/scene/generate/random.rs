@@ -7,7 +7,7 @@ pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {
     [u64::from(seed), index, usage].into_iter().fold(0, |state, part| mix(state.wrapping_add(part)))
 }
 
-/// A number from 0 to below 1; see [`hash`].
+/// A number from 0 to below 1; see `hash`.
 pub fn unit(seed: u32, index: u64, usage: u64) -> f64 {
     // A double holds the upper 53 bits.
     (hash(seed, index, usage) >> 11) as f64 / (1u64 << 53) as f64
