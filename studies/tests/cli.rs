@@ -263,8 +263,8 @@ fn folders_that_cannot_be_written_to_are_told_before_anything_is_measured() {
 #[test]
 fn interrupted() {
     let place = Place::new();
-    for (signal, study) in [("INT", "table1 --orientations 10000"), ("TERM", "ratio")] {
-        let folder = format!("out-{signal}");
+    for study in ["table1 --orientations 10000", "ratio"] {
+        let folder = format!("out-{}", study.len());
         let mut command = place.command(&format!("{study} -o {folder}"));
         let mut running = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
         // It listens before it makes its folder.
@@ -273,8 +273,8 @@ fn interrupted() {
             assert!(begun.elapsed() < Duration::from_secs(300), "it does not begin");
             std::thread::sleep(Duration::from_millis(2));
         }
-        // By the shell: a bare system has no program `kill`.
-        let kill = format!("kill -s {signal} {}", running.id());
+        // Not Ctrl-C, which a program in the background may ignore. By the shell: a bare system has no program `kill`.
+        let kill = format!("kill -s TERM {}", running.id());
         assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
         let begun = Instant::now();
         while running.try_wait().unwrap().is_none() {
