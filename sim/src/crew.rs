@@ -88,6 +88,23 @@ impl Crew {
         assert!(!panicked.swap(false, Ordering::Relaxed), "a thread that helped has panicked");
     }
 
+    /// Calls `work` with each item, in parallel and in no order.
+    ///
+    /// # Panics
+    /// If `work` panics on any thread.
+    pub(crate) fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
+        if self.threads().min(items.len()) <= 1 {
+            return items.iter_mut().for_each(work);
+        }
+        let queue = Mutex::new(items.iter_mut());
+        self.run(&|_| {
+            let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            while let Some(item) = next() {
+                work(item);
+            }
+        });
+    }
+
     /// The results of `work` for each number below `count`, in order; each thread computes a range of them.
     ///
     /// # Panics

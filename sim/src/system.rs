@@ -170,7 +170,8 @@ impl System {
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);
         }
-        self.meet(End { interval, before: before.nodes(), position, velocity, timing }, constraints);
+        let changed = &mut Vec::new();
+        self.meet(End { interval, before: before.nodes(), position, velocity, timing, changed }, constraints);
     }
 
     /// Lets surfaces meet at the end of a step. `constraints` is the memory of grips in the step.
@@ -178,7 +179,7 @@ impl System {
         let Some(stage) = &self.contact else { return };
         let interval = end.interval;
         let held = self.grips(constraints).flat_map(|(grip, memory)| grip.moved(interval, memory));
-        stage.resolve(end, held.map(|(node, ..)| node));
+        stage.resolve(end, held.map(|(node, ..)| node), &self.crew);
     }
 
     /// Places the nodes that grips hold at the end of a step where they are after a `share` of it, with their velocity in

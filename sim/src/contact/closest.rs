@@ -106,11 +106,20 @@ pub(super) fn of_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [f64; 2] {
 /// Where a surface is nearly flat along an edge that presses on it, each feature is the nearest in turn, from step to step, and the others go
 /// through meanwhile. With the slack all of them count. One that counts without need does no harm: its points are near each other, too.
 ///
-/// Returns by how much (m) the way leads towards one of them: zero or less if it leads away.
-pub(super) fn towards(way: DVec3, from: DVec3, around: impl Iterator<Item = DVec3>) -> f64 {
+/// Returns by how much (m) the way leads towards one of them: zero if it leads away.
+pub(super) fn towards(way: DVec3, from: DVec3, around: impl Iterator<Item = DVec3> + Clone) -> f64 {
     /// The cosine of the least angle between the way and a face, 73°. With 84° some corners that hit each other still crossed.
     const SLACK: f64 = 0.3;
-    around.fold(f64::NEG_INFINITY, |most, corner| most.max(along(way, corner - from))) - SLACK * way.length()
+    let whole = SLACK * SLACK * way.length_squared();
+    let leads_away = |corner: DVec3| {
+        let (direction, along) = (corner - from, way.dot(corner - from));
+        along <= 0.0 || along * along <= whole * direction.length_squared()
+    };
+    if around.clone().all(leads_away) {
+        return 0.0;
+    }
+    let most = around.fold(0.0, |most: f64, corner| most.max(along(way, corner - from)));
+    (most - SLACK * way.length()).max(f64::MIN_POSITIVE)
 }
 
 /// The length of a way along a direction (m).
@@ -193,10 +202,10 @@ mod tests {
     #[test]
     fn a_way_leads_away_from_convex_edges_only() {
         let sides = [DVec3::new(1.0, -0.5, 0.0), DVec3::new(-1.0, -0.5, 0.0)];
-        let away = |way| towards(way, DVec3::ZERO, sides.into_iter()) <= 0.0;
+        let away = |way| towards(way, DVec3::ZERO, sides.into_iter()) == 0.0;
         assert!(away(DVec3::Y) && away(DVec3::new(0.2, 1.0, 0.0)) && away(DVec3::new(0.5, 1.0, 0.0)));
         assert!(!away(DVec3::X) && !away(-DVec3::Y) && !away(DVec3::new(1.5, 1.0, 0.0)));
         // A flat place: both sides count, to round-off.
-        assert!(towards(DVec3::Y, DVec3::ZERO, [DVec3::new(1.0, 1e-16, 0.0), -DVec3::X].into_iter()) <= 0.0);
+        assert_eq!(towards(DVec3::Y, DVec3::ZERO, [DVec3::new(1.0, 1e-16, 0.0), -DVec3::X].into_iter()), 0.0);
     }
 }

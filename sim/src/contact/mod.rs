@@ -5,13 +5,17 @@
 //! [`Contacts`].
 
 mod bound;
+mod candidates;
 mod closest;
+mod extent;
+mod features;
 mod obstacle;
 mod pair;
 mod rule;
 mod shape;
 mod stage;
 mod surface;
+mod touches;
 
 pub(crate) use bound::{Bound, Floor};
 pub use obstacle::ground;

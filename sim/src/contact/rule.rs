@@ -56,6 +56,8 @@ pub(super) struct Touch {
     pub(super) distance: f64,
     /// `Σ c²/m` (1/kg).
     pub(super) mobility: f64,
+    /// Whether no node is held.
+    pub(super) is_free: bool,
     /// The velocity (m/s) by which the surface of a round obstacle that turns moves along at the contact, beside that of its axis.
     pub(super) drag: DVec3,
     /// What has to be added to their speed (m/s) for the one that decides the rebound.
@@ -77,6 +79,9 @@ pub(super) struct Moved<'a> {
     /// ΔT (s).
     pub(super) step: f64,
     pub(super) timing: Timing,
+    /// Whether each node has been changed, and those that have.
+    pub(super) is_changed: &'a mut [bool],
+    pub(super) changed: &'a mut Vec<u32>,
 }
 
 impl Moved<'_> {
@@ -94,69 +99,79 @@ impl Moved<'_> {
         self.inverse_mass.get(node as usize).copied().unwrap_or(0.0)
     }
 
+    /// Notes that a node is changed.
+    fn mark(&mut self, node: u32) {
+        if !std::mem::replace(&mut self.is_changed[node as usize], true) {
+            self.changed.push(node);
+        }
+    }
+
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.
     pub(super) fn resolve(&mut self, touch: &Touch, terms: &[Term]) -> DVec3 {
         let Touch { law: Law { gap, restitution, friction }, normal, distance, .. } = *touch;
-        let sum = |of: &dyn Fn(u32) -> DVec3| terms.iter().map(|term| of(term.node) * term.weight).sum::<DVec3>();
-        let reached = normal.dot(sum(&|node| self.place(node)));
+        let (mut way, mut speed) = (DVec3::ZERO, DVec3::ZERO);
+        for &Term { node, weight } in terms {
+            way += self.place(node) * weight;
+            speed += self.speed(node) * weight;
+        }
+        let reached = normal.dot(way);
         if reached >= gap {
             return DVec3::ZERO;
         }
-        let relative = sum(&|node| self.speed(node)) - touch.drag;
+        let relative = speed - touch.drag;
         let along = normal.dot(relative);
         // The speed that leaves the pair as near as it may come, and the one that throws it back.
         let apart = (gap.min(distance) - distance) / self.step - (along + touch.to_path);
         let back = -(1.0 + restitution) * (along + touch.to_rebound);
         let kick = apart.max(back).max(0.0);
+        let short = (gap - reached - self.step * kick).max(0.0);
+        if kick == 0.0 && short == 0.0 {
+            return DVec3::ZERO;
+        }
         let slip = relative - normal * along;
         let slip_speed = slip.length();
         let hold = if slip_speed > 0.0 { (friction * kick / slip_speed).min(1.0) } else { 0.0 };
         let impulse = (normal * kick - slip * hold) / touch.mobility;
-        let out = normal * ((gap - reached - self.step * kick).max(0.0) / touch.mobility);
-        let torque = if self.timing == Timing::End { self.torque(terms, impulse, out) } else { DVec3::ZERO };
+        let out = normal * (short / touch.mobility);
         for &Term { node, weight } in terms {
             let share = weight * self.mobility(node);
             if share != 0.0 {
                 self.velocity[node as usize] += impulse * share;
                 self.position[node as usize] += (impulse * self.step + out) * share;
+                self.mark(node);
             }
         }
-        if torque != DVec3::ZERO {
-            self.turn_back(terms, torque);
+        if self.timing == Timing::End && touch.is_free {
+            // The change of Σ m x × v by the impulse and by the push.
+            let torque = (way - speed * self.step).cross(impulse) + out.cross(speed + impulse * touch.mobility);
+            // Without friction only the round-off of positions is left.
+            let round_off = 8.0 * f64::EPSILON * self.place(terms[0].node).length() * impulse.length();
+            if torque.length_squared() > round_off * round_off {
+                self.turn_back(terms, torque);
+            }
         }
         impulse
-    }
-
-    /// The change of angular momentum (kg m²/s) by an impulse and a push `out` (kg m) at the end of a step: `Σ m x × v` after both
-    /// minus that before; zero where a node is held.
-    fn torque(&self, terms: &[Term], impulse: DVec3, out: DVec3) -> DVec3 {
-        let mut sum = DVec3::ZERO;
-        for &Term { node, weight } in terms {
-            let mobility = self.mobility(node);
-            if mobility == 0.0 {
-                return DVec3::ZERO;
-            }
-            let (place, speed) = (self.place(node), self.speed(node));
-            let after = speed + impulse * (weight * mobility);
-            sum += ((place - speed * self.step).cross(impulse) + out.cross(after)) * weight;
-        }
-        sum
     }
 
     /// Turns the nodes of a pair so that they lose an angular momentum (kg m²/s), unless they lie too near one line for it.
     fn turn_back(&mut self, terms: &[Term], torque: DVec3) {
         /// The least determinant of an inertia tensor, relative to that of a ball with the same trace.
         const ROUND: f64 = 1e-3;
-        let masses = || terms.iter().map(|&Term { node, .. }| (node, self.mobility(node).recip()));
-        let whole: f64 = masses().map(|(_, mass)| mass).sum();
-        let centre = masses().map(|(node, mass)| self.place(node) * mass).sum::<DVec3>() / whole;
-        let mut inertia = DMat3::ZERO;
-        for (node, mass) in masses() {
-            let arm = self.place(node) - centre;
-            let outer = DMat3::from_cols(arm * arm.x, arm * arm.y, arm * arm.z);
-            inertia += (DMat3::from_diagonal(DVec3::splat(arm.length_squared())) - outer) * mass;
+        let from = self.place(terms[0].node);
+        let (mut whole, mut centre, mut outer) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        for &Term { node, .. } in terms {
+            let (mass, arm) = (self.mobility(node).recip(), self.place(node) - from);
+            let heavy = arm * mass;
+            whole += mass;
+            centre += heavy;
+            outer += DMat3::from_cols(heavy * arm.x, heavy * arm.y, heavy * arm.z);
         }
-        let mean = (inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z) / 3.0;
+        let centre = centre / whole;
+        let heavy = centre * whole;
+        outer -= DMat3::from_cols(heavy * centre.x, heavy * centre.y, heavy * centre.z);
+        let trace = outer.x_axis.x + outer.y_axis.y + outer.z_axis.z;
+        let (inertia, centre) = (DMat3::from_diagonal(DVec3::splat(trace)) - outer, from + centre);
+        let mean = 2.0 * trace / 3.0;
         let is_plane = torque.truncate() == DVec2::ZERO && inertia.z_axis.truncate() == DVec2::ZERO;
         let spin = if is_plane {
             torque / inertia.z_axis.z
@@ -168,6 +183,7 @@ impl Moved<'_> {
         for &Term { node, .. } in terms {
             let arm = self.place(node) - centre;
             self.velocity[node as usize] -= spin.cross(arm);
+            self.mark(node);
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
 
-use super::pair::{Extent, Pair, Places, Seen, Touches};
+use super::extent::Extent;
+use super::pair::{Pair, Places, Seen};
 use super::rule::{Law, Moved, Timing};
 use super::surface::Surface;
 use super::{Contacts, Obstacle, Side};
+use crate::crew::Crew;
 use crate::motion::Interval;
 use crate::part::Part;
 use crate::state::Nodes;
@@ -21,6 +23,8 @@ pub(crate) struct Stage {
     /// Positions of all nodes at rest (m).
     rest: Vec<DVec3>,
     inverse_mass: Vec<f64>,
+    /// The nodes of the surfaces of bodies, each once.
+    nodes: Vec<u32>,
     known: Mutex<Known>,
 }
 
@@ -47,8 +51,12 @@ struct Known {
     left: f64,
     /// The points of the surfaces in pairs.
     placed: Vec<Vec<DVec3>>,
-    touches: Touches,
     inverse_mass: Vec<f64>,
+    /// The velocities at the start of the step minus those at its end (m/s), of nodes and of points of obstacles.
+    slowed: Vec<DVec3>,
+    still: Vec<DVec3>,
+    /// Whether each node was changed in this step.
+    is_changed: Vec<bool>,
 }
 
 /// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
@@ -70,7 +78,7 @@ impl Way {
 
 impl Clone for Stage {
     fn clone(&self) -> Self {
-        let Self { contacts, surfaces, bodies, obstacles, rest, inverse_mass, .. } = self;
+        let Self { contacts, surfaces, bodies, obstacles, rest, inverse_mass, nodes, .. } = self;
         Self {
             contacts: contacts.clone(),
             surfaces: surfaces.clone(),
@@ -78,12 +86,13 @@ impl Clone for Stage {
             obstacles: obstacles.clone(),
             rest: rest.clone(),
             inverse_mass: inverse_mass.clone(),
+            nodes: nodes.clone(),
             known: Mutex::default(),
         }
     }
 }
 
-/// The end of a step, as contact sees and changes it.
+/// The end of a step, as contact sees and changes it. Only the nodes of surfaces count.
 pub(crate) struct End<'a> {
     pub(crate) interval: Interval,
     /// At the start of the step.
@@ -91,6 +100,8 @@ pub(crate) struct End<'a> {
     pub(crate) position: &'a mut [DVec3],
     pub(crate) velocity: &'a mut [DVec3],
     pub(crate) timing: Timing,
+    /// Takes the nodes that contact changes.
+    pub(crate) changed: &'a mut Vec<u32>,
 }
 
 impl Stage {
@@ -111,6 +122,8 @@ impl Stage {
             surfaces.push(surface);
         }
         let bodies = surfaces.len();
+        let mut nodes: Vec<u32> = surfaces.iter().flat_map(|surface| surface.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
         let mut solids = Vec::new();
         let mut first = rest.len() as u32;
         for (number, obstacle) in obstacles.iter().enumerate() {
@@ -127,6 +140,7 @@ impl Stage {
             obstacles: solids,
             rest,
             inverse_mass,
+            nodes,
             known: Mutex::default(),
         };
         (meets_itself || stage.surfaces.len() > 1).then_some(stage)
@@ -157,9 +171,14 @@ impl Stage {
         }))
     }
 
+    /// The nodes of the surfaces of bodies, in their order.
+    pub(crate) fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
     /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, which stay as they are.
-    pub(crate) fn resolve(&self, end: End<'_>, held: impl Iterator<Item = usize>) {
-        let End { interval, before, position, velocity, timing } = end;
+    pub(crate) fn resolve(&self, end: End<'_>, held: impl Iterator<Item = usize>, crew: &Crew) {
+        let End { interval, before, position, velocity, timing, changed } = end;
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let known = &mut *known;
         self.place_obstacles(interval, &mut known.obstacles);
@@ -196,33 +215,40 @@ impl Stage {
                 placed.extend((0..points.len() as u32).map(|point| start.point(points, point)));
             }
         }
+        known.slowed.resize(position.len(), DVec3::ZERO);
+        for node in self.nodes.iter().map(|&node| node as usize) {
+            known.slowed[node] = before.velocity[node] - velocity[node];
+        }
+        known.still.resize(moved.len(), DVec3::ZERO);
         let seen = Seen {
             surfaces: &self.surfaces,
             rest: Places { nodes: &self.rest, obstacles: &[] },
             start: &known.placed,
-            nodes: start,
             drag: &|surface, at, out| self.drag(surface, interval, at, out),
-            end: ended,
-            velocity: [before.velocity, velocity].map(|nodes| Places { nodes, obstacles: speed }),
+            slowed: Places { nodes: &known.slowed, obstacles: &known.still },
             inverse_mass: &known.inverse_mass,
             timing,
         };
-        known.touches.clear();
-        for pair in &mut known.pairs {
-            let [way, ahead] = [0, 1].map(|at| {
-                let [one, other] = pair.of.map(|surface| known.moved[at][surface]);
-                one.relative(other)
-            });
-            pair.go(&seen, way, ahead);
-            pair.look(&seen, ahead, &mut known.touches);
-        }
-        let Touches { of_points, of_edges, terms } = &known.touches;
+        let [since, ahead] = &known.moved;
+        let relative = |ways: &[Way], [one, other]: [usize; 2]| ways[one].relative(ways[other]);
+        crew.each(&mut known.pairs, |pair| {
+            let ahead = relative(ahead, pair.of);
+            pair.go(&seen, relative(since, pair.of), ahead);
+            pair.look(&seen, ahead);
+        });
+        known.is_changed.clear();
+        known.is_changed.resize(position.len(), false);
         let obstacles = [&moved[..], &speed[..]];
-        let inverse_mass = &known.inverse_mass[..];
-        let mut nodes = Moved { inverse_mass, position, velocity, obstacles, step: interval.step, timing };
-        for touch in of_points.iter().chain(of_edges) {
-            let [first, last] = touch.terms.map(|at| at as usize);
-            nodes.resolve(touch, &terms[first..last]);
+        let (inverse_mass, is_changed) = (&known.inverse_mass[..], &mut known.is_changed[..]);
+        let step = interval.step;
+        let mut nodes = Moved { inverse_mass, position, velocity, obstacles, step, timing, is_changed, changed };
+        let points = known.pairs.iter().map(|pair| (&pair.touches.of_points, &pair.touches.terms));
+        let edges = known.pairs.iter().map(|pair| (&pair.touches.of_edges, &pair.touches.terms));
+        for (touches, terms) in points.chain(edges) {
+            for touch in touches {
+                let [first, last] = touch.terms.map(|at| at as usize);
+                nodes.resolve(touch, &terms[first..last]);
+            }
         }
     }
 
@@ -310,7 +336,8 @@ impl Stage {
         self.place_obstacles(interval, &mut known.obstacles);
         let places = Places { nodes: at.position, obstacles: &known.obstacles[0] };
         let extents: Vec<_> = self.surfaces.iter().map(|surface| Extent::of(surface, &places)).collect();
-        let fastest = at.velocity.iter().fold(0.0, |most: f64, speed| most.max(speed.length_squared())).sqrt();
+        let speeds = self.nodes.iter().map(|&node| at.velocity[node as usize].length_squared());
+        let fastest = speeds.fold(0.0, f64::max).sqrt();
         let speeds: Vec<f64> = self.obstacles.iter().map(|solid| solid.greatest_speed()).collect();
         let mut speed = f64::INFINITY;
         for one in 0..self.bodies {

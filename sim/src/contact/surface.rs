@@ -44,6 +44,13 @@ pub(super) struct Facet {
     pub(super) owns_corners: [bool; 3],
 }
 
+impl Facet {
+    /// The corners that count.
+    pub(super) fn used(&self) -> &[u32] {
+        &self.corners[..self.count as usize]
+    }
+}
+
 impl Surface {
     /// The surface of a body whose first node has the number `first` in its world.
     pub(crate) fn of(body: &Body, first: u32) -> Self {

@@ -108,9 +108,9 @@ impl Dynamics for ByKernel {
                     own.for_each(|(node, to, speed)| place(node - nodes.start, to, speed));
                 }
             };
-            let meet = |step: u64, before: Nodes<'_>, position: &mut [DVec3], velocity: &mut [DVec3]| {
-                let interval = system.interval(step);
-                system.meet(End { interval, before, position, velocity, timing }, memory);
+            let meet = |step: u64, before: Nodes<'_>, after: &mut State, changed: &mut Vec<u32>| {
+                let (interval, State { position, velocity, .. }) = (system.interval(step), after);
+                system.meet(End { interval, before, position, velocity, timing, changed }, memory);
             };
             let alone = |step: u64, at: Nodes<'_>, most: u64| {
                 // Constraints may take nodes anywhere.
@@ -135,7 +135,7 @@ impl Dynamics for ByKernel {
                 floor: met.floor(),
                 grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
                 held: &[],
-                meeting: system.contact.as_ref().map(|_| Meeting { meet: &meet, alone: &alone }),
+                meeting: system.contact.as_ref().map(|stage| Meeting { meet: &meet, alone: &alone, nodes: stage.nodes() }),
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
             let outcome = rollback.advance(until, &around, &system.crew);

@@ -28,7 +28,7 @@ use crate::body::Body;
 use crate::contact::{Bound, Floor};
 use crate::lanes::Set;
 use crate::law::{ByLaw, Energy, Filled, Law};
-use crate::state::Nodes;
+use crate::state::{Nodes, State};
 use general::General;
 use glam::DVec3;
 use std::ops::Range;
@@ -125,8 +125,9 @@ pub(crate) struct Held<'a> {
     pub(crate) place: &'a Place<'a>,
 }
 
-/// Changes the positions (m) and velocities (m/s) of all nodes at the end of a step of this number that began at the given ones.
-pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync + 'a;
+/// Changes the positions (m) and velocities (m/s) of nodes at the end of a step of this number that began at the given ones, and adds those that
+/// it changes to a list.
+pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut State, &mut Vec<u32>) + Sync + 'a;
 
 /// How many of some steps nodes can take without meeting, from the step of this number on, and the speed (m/s) up to which they can.
 pub(crate) type Alone<'a> = dyn Fn(u64, Nodes<'_>, u64) -> Option<(u64, f64)> + Sync + 'a;
@@ -136,6 +137,8 @@ pub(crate) type Alone<'a> = dyn Fn(u64, Nodes<'_>, u64) -> Option<(u64, f64)> + 
 pub(crate) struct Meeting<'a> {
     pub(crate) meet: &'a Meet<'a>,
     pub(crate) alone: &'a Alone<'a>,
+    /// The nodes of surfaces, in their order. Only they have to be given.
+    pub(crate) nodes: &'a [u32],
 }
 
 /// Writes the forces from outside on all nodes (N), which are at positions (m) after a share of the step of this number.

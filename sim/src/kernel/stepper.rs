@@ -314,7 +314,7 @@ impl Rollback {
     fn run_alone(&mut self, most: u64, around: &Around<'_>, crew: &Crew) -> Option<u64> {
         let meeting = around.meeting?;
         let mut after = std::mem::take(&mut self.buffers[1]);
-        self.read(&mut after);
+        self.read(meeting.nodes, &mut after);
         let found = (meeting.alone)(self.steps, after.nodes(), most);
         self.buffers[1] = after;
         let (count, speed) = found?;
@@ -343,16 +343,18 @@ impl Rollback {
         let outline = self.parts[0].passes(scheme, &steps, around);
         let mut buffers = std::mem::take(&mut self.buffers);
         let [before, after] = &mut buffers;
+        let all: Vec<u32> = around.push.iter().flat_map(|_| 0..count as u32).collect();
+        let mut changed = Vec::new();
         let (mut begun, mut is_read, mut forces) = (None, false, around.forces.to_vec());
         let mut lost = None;
         for pass in 0..outline.len() {
             let Pass { number, stage, shares, .. } = outline.get(pass);
-            if around.meeting.is_some() && begun.replace(number) != Some(number) {
+            if let Some(Meeting { nodes, .. }) = around.meeting.filter(|_| begun.replace(number) != Some(number)) {
                 // What contact has left is the start of the next step.
-                if is_read { std::mem::swap(before, after) } else { self.read(before) }
+                if is_read { std::mem::swap(before, after) } else { self.read(nodes, before) }
             }
             if let Some(push) = around.push {
-                self.read(after);
+                self.read(&all, after);
                 forces.resize(count, DVec3::ZERO);
                 push(number, shares[0], &after.position, &mut forces);
             }
@@ -364,10 +366,11 @@ impl Rollback {
             if lost.is_some() {
                 break;
             }
-            if let Some(Meeting { meet, .. }) = around.meeting.filter(|_| stage.has_contact()) {
-                self.read(after);
-                meet(number, before.nodes(), &mut after.position, &mut after.velocity);
-                self.write(after);
+            if let Some(Meeting { meet, nodes, .. }) = around.meeting.filter(|_| stage.has_contact()) {
+                self.read(nodes, after);
+                changed.clear();
+                meet(number, before.nodes(), after, &mut changed);
+                self.write(&changed, after);
                 is_read = true;
             } else {
                 is_read = false;
@@ -407,19 +410,23 @@ impl Rollback {
         found.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn read(&mut self, state: &mut State) {
+    /// Reads some nodes, which are sorted.
+    fn read(&mut self, mut some: &[u32], state: &mut State) {
         for PartStepper { stepper, nodes, .. } in &mut self.parts {
-            for (own, node) in nodes.clone().enumerate() {
-                (state.position[node], state.velocity[node]) = stepper.node(own);
+            let (own, others) = some.split_at(some.partition_point(|&node| (node as usize) < nodes.end));
+            for node in own.iter().map(|&node| node as usize) {
+                (state.position[node], state.velocity[node]) = stepper.node(node - nodes.start);
             }
+            some = others;
         }
     }
 
-    fn write(&mut self, state: &State) {
-        for PartStepper { stepper, nodes, .. } in &mut self.parts {
-            for (own, node) in nodes.clone().enumerate() {
-                stepper.set_node(own, state.position[node], state.velocity[node]);
-            }
+    /// Writes some nodes.
+    fn write(&mut self, some: &[u32], state: &State) {
+        for node in some.iter().map(|&node| node as usize) {
+            let part = self.parts.partition_point(|part| part.nodes.end <= node);
+            let PartStepper { stepper, nodes, .. } = &mut self.parts[part];
+            stepper.set_node(node - nodes.start, state.position[node], state.velocity[node]);
         }
     }
 }

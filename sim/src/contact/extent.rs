@@ -1,0 +1,76 @@
+//! Boxes around points, and which of them are near each other.
+
+use super::pair::Places;
+use super::surface::Surface;
+use glam::DVec3;
+
+/// A box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Extent {
+    /// The box around all points of a surface.
+    pub(super) fn of(surface: &Surface, at: &Places<'_>) -> Self {
+        Self::around(surface.nodes.iter().map(|&node| at.node(node)))
+    }
+
+    pub(super) fn around(points: impl Iterator<Item = DVec3>) -> Self {
+        let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        points.fold(none, |Self { low, high }, point| Self { low: low.min(point), high: high.max(point) })
+    }
+
+    pub(super) fn grown(self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    pub(super) fn common(&self, other: &Self) -> Self {
+        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+
+    /// The distance between two boxes (m).
+    pub(super) fn distance(&self, other: &Self) -> f64 {
+        (self.low - other.high).max(other.low - self.high).max(DVec3::ZERO).length()
+    }
+
+    pub(super) fn size(&self) -> DVec3 {
+        self.high - self.low
+    }
+
+    pub(super) fn longest_axis(&self) -> usize {
+        let size = self.size();
+        (1..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
+    }
+
+    pub(super) fn begins(&self) -> f64 {
+        self.low.x
+    }
+
+    pub(super) fn ends(&self) -> f64 {
+        self.high.x
+    }
+}
+
+/// The features whose boxes meet a box.
+pub(super) fn near(features: impl Iterator<Item = (u32, Extent)>, common: &Extent) -> Vec<(u32, Extent)> {
+    features.filter(|(_, extent)| extent.meets(common)).collect()
+}
+
+/// Calls `found` with the features whose boxes are nearer than a reach (m) along each axis, by a sweep along one.
+pub(super) fn sweep([one, other]: [&Vec<(u32, Extent)>; 2], reach: f64, axis: usize, mut found: impl FnMut([u32; 2])) {
+    let mut sorted = other.clone();
+    sorted.sort_by(|a, b| a.1.low[axis].total_cmp(&b.1.low[axis]));
+    let widest = sorted.iter().map(|(_, extent)| extent.high[axis] - extent.low[axis]).fold(0.0, f64::max);
+    for (first, extent) in one {
+        let grown = extent.grown(reach);
+        let from = sorted.partition_point(|(_, other)| other.low[axis] < grown.low[axis] - widest);
+        let beside = sorted[from..].iter().take_while(|(_, other)| other.low[axis] <= grown.high[axis]);
+        beside.filter(|(_, other)| grown.meets(other)).for_each(|(second, _)| found([*first, *second]));
+    }
+}

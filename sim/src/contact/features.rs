@@ -1,0 +1,168 @@
+//! The closest points of two features, and whether contact counts there.
+
+use super::closest::{self, On};
+use super::surface::Surface;
+use glam::DVec3;
+
+/// The kinds of features that meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A point of one of two surfaces, 0 or 1, and a facet of the other.
+    Point {
+        /// The surface with the point.
+        of: usize,
+    },
+    /// An edge of the first surface and one of the second.
+    Edges,
+}
+
+/// A surface with the places of its points (m).
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) at: &'a [DVec3],
+}
+
+impl Placed<'_> {
+    pub(super) fn point(&self, point: u32) -> DVec3 {
+        self.at[point as usize]
+    }
+}
+
+/// Two closest points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Closest {
+    /// The point of the first feature (m).
+    pub(super) here: DVec3,
+    /// From the point of the second feature to that of the first (m).
+    pub(super) way: DVec3,
+    /// The shares of the corners of the two features in their points.
+    pub(super) shares: [[f64; 3]; 2],
+    /// Zero for a contact: a local minimum of the distance that no other feature counts. Otherwise how far points of the features have to move
+    /// at least (m) until it can be one.
+    pub(super) rests: f64,
+}
+
+/// A way of one point changes what depends on lengths of features by at most so many times as much.
+const LEVER: f64 = 6.0;
+
+impl Kind {
+    pub(super) const ALL: [Self; 3] = [Self::Point { of: 0 }, Self::Point { of: 1 }, Self::Edges];
+
+    /// The closest points of two features. Those farther than `far` (m) from each other are no contact.
+    pub(super) fn closest(self, placed: [Placed<'_>; 2], is_same: bool, features: [u32; 2], far: f64) -> Closest {
+        match self {
+            Self::Point { of } => point_facet([placed[of], placed[1 - of]], features, of == 0, is_same),
+            Self::Edges => edges(placed, features, far),
+        }
+    }
+}
+
+/// `counts_corners`: whether two points that meet are counted here, and not from the other side.
+fn point_facet(
+    [one, other]: [Placed<'_>; 2],
+    [point, facet]: [u32; 2],
+    counts_corners: bool,
+    is_same: bool,
+) -> Closest {
+    let Placed { surface, .. } = other;
+    let facet = &surface.facets[facet as usize];
+    let place = |corner: u32| other.point(corner);
+    let (here, corners) = (one.point(point), facet.corners.map(place));
+    let nearest = match facet.count {
+        3 => closest::of_triangle(here, corners),
+        2 => closest::of_segment(here, [corners[0], corners[1]]),
+        _ => closest::Nearest { shares: [1.0, 0.0, 0.0], on: On::Corner(0) },
+    };
+    let there: DVec3 = corners.iter().zip(nearest.shares).map(|(&corner, share)| corner * share).sum();
+    let way = here - there;
+    // How far the point has to move until another part of the facet is the nearest.
+    let leaves = |on: &[usize]| {
+        let others = corners[..facet.count as usize].iter().enumerate().filter(|(corner, _)| !on.contains(corner));
+        let inwards = others.map(|(_, &corner)| -closest::along(way, corner - there));
+        on.iter()
+            .filter(|_| on.len() > 1)
+            .map(|&end| corners[end].distance(there))
+            .chain(inwards)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let rest = |counts: bool, around: &[u32], on: &[usize]| {
+        let towards = if counts { closest::towards(way, there, around.iter().map(|&at| place(at))) } else { f64::INFINITY };
+        if towards == 0.0 { 0.0 } else { (towards.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE) }
+    };
+    let rests = match nearest.on {
+        On::Inside => 0.0,
+        On::Side(side) => {
+            let wings = &surface.wings[facet.sides[side] as usize];
+            rest(facet.owns_sides[side], wings, &[side, (side + 1) % 3])
+        }
+        On::Corner(corner) => {
+            let number = facet.corners[corner] as usize;
+            let is_first = counts_corners && (!is_same || (point as usize) < number);
+            rest(is_first && facet.owns_corners[corner], &surface.rings[number], &[corner])
+        }
+    };
+    Closest { here, way, shares: [[1.0, 0.0, 0.0], nearest.shares], rests }
+}
+
+/// Edges that cross each other. Two that are both flat do not count: points and facets meet there.
+fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2], far: f64) -> Closest {
+    /// The least squared sine of the angle between them: parallel edges meet with their ends.
+    const LEAST_SINE: f64 = 1e-6;
+    let mine = one.surface.edges[first as usize].map(|end| one.point(end));
+    let theirs = other.surface.edges[second as usize].map(|end| other.point(end));
+    let [s, t] = closest::of_segments(mine, theirs);
+    let (here, there) = (mine[0].lerp(mine[1], s), theirs[0].lerp(theirs[1], t));
+    let way = here - there;
+    let shares = [s, t].map(|share| [1.0 - share, share, 0.0]);
+    let closest = |rests: f64| Closest { here, way, shares, rests };
+    if way.length_squared() >= far * far {
+        return closest(0.0);
+    }
+    let along = [mine[1] - mine[0], theirs[1] - theirs[0]];
+    let flat = |placed: Placed<'_>, edge: u32, from: DVec3, along: DVec3| {
+        flat_for(along, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
+    };
+    let my_flat = flat(one, first, here, along[0]);
+    let flat = if my_flat > 0.0 { my_flat.min(flat(other, second, there, along[1])) } else { 0.0 };
+    if flat > 0.0 {
+        return closest(flat / LEVER);
+    }
+    let towards = |placed: Placed<'_>, edge: u32, from: DVec3, way: DVec3| {
+        closest::towards(way, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
+    };
+    let sine = along[0].cross(along[1]).length_squared() / (along[0].length_squared() * along[1].length_squared());
+    let is_inside = |share: f64| share > 0.0 && share < 1.0;
+    let beyond = if is_inside(s) && is_inside(t) && sine > LEAST_SINE {
+        towards(one, first, here, -way).max(towards(other, second, there, way))
+    } else {
+        past_ends(mine, theirs, sine).max(f64::MIN_POSITIVE)
+    };
+    closest(beyond / LEVER)
+}
+
+/// How far the ends of two segments have to move (m) until their lines are closest between them; zero if nearly parallel. `sine` is the squared
+/// one of their angle, by which ways grow to those of the closest points.
+fn past_ends([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], sine: f64) -> f64 {
+    let (one, other, from) = (b - a, d - c, a - c);
+    let (aa, cc, ac) = (one.length_squared(), other.length_squared(), one.dot(other));
+    let s = (ac * other.dot(from) - one.dot(from) * cc) / (aa * cc * sine);
+    let t = (ac * s + other.dot(from)) / cc;
+    let past = |share: f64, squared: f64| (-share).max(share - 1.0) * squared.sqrt();
+    let past = past(s, aa).max(past(t, cc)).min(aa.min(cc).sqrt());
+    if past > 0.0 { 0.5 * past * sine } else { 0.0 }
+}
+
+/// How far a corner has to move (m) until two triangles do not continue each other at an edge; zero if they do not.
+fn flat_for(along: DVec3, from: DVec3, mut wings: impl Iterator<Item = DVec3>) -> f64 {
+    /// The sine of the angle between them from which on they do not.
+    const BEND: f64 = 0.1;
+    let (Some(first), Some(second), None) = (wings.next(), wings.next(), wings.next()) else { return 0.0 };
+    let [one, other] = [first, second].map(|corner| (corner - from).cross(along));
+    let (areas, across) = (one.length_squared() * other.length_squared(), one.cross(other).length_squared());
+    if one.dot(other) >= 0.0 || across >= BEND * BEND * areas || areas.is_nan() {
+        return 0.0;
+    }
+    let bend = (across / areas).sqrt();
+    (BEND - bend) * one.length().min(other.length()) / along.length()
+}
