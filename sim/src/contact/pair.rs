@@ -3,7 +3,7 @@
 use super::candidates::Candidates;
 use super::extent::{Extent, near, sweep};
 use super::features::{Kind, Placed};
-use super::rule::{Law, Timing};
+use super::rule::Law;
 use super::surface::Surface;
 use super::touches::{Sides, Touches};
 use crate::carried::Weights;
@@ -54,12 +54,8 @@ pub(super) struct Seen<'a> {
     pub(super) rest: Places<'a>,
     /// The points of each surface at the start of the step (m); of those in pairs.
     pub(super) start: &'a [Vec<DVec3>],
-    /// The velocities at the start of the step minus those at its end (m/s).
-    pub(super) slowed: Places<'a>,
-    pub(super) inverse_mass: &'a [f64],
-    /// See [`Touch::drag`]: for a surface, a point on its axis (m), and the way from there to its surface (m).
+    /// See [`Touch::drag`](super::rule::Touch::drag): for a surface, a point on its axis (m), and the way from there to its surface (m).
     pub(super) drag: &'a (dyn Fn(usize, DVec3, DVec3) -> DVec3 + Sync),
-    pub(super) timing: Timing,
 }
 
 impl<'a> Seen<'a> {
@@ -137,7 +133,7 @@ impl Pair {
         let (placed, is_same) = (of.map(|surface| seen.placed(surface)), of[0] == of[1]);
         let (due, far) = (*way + 2.0 * ahead, law.gap + 2.0 * ahead);
         for (kind, list) in Kind::ALL.into_iter().zip(candidates) {
-            let sides = Sides { kind, of: *of, law: *law, seen };
+            let sides = Sides { kind, of: *of, seen };
             list.for_each_awake(due, |features| {
                 let closest = kind.closest(placed, is_same, features, far);
                 let distance = closest.way.length();

@@ -49,21 +49,12 @@ pub(super) struct Term {
 /// A pair of closest points at the start of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
-    pub(super) law: Law,
     /// Unit vector from the point on the second surface to that on the first.
     pub(super) normal: DVec3,
     /// Their distance at the start of the step (m).
     pub(super) distance: f64,
-    /// `Σ c²/m` (1/kg).
-    pub(super) mobility: f64,
-    /// Whether no node is held.
-    pub(super) is_free: bool,
     /// The velocity (m/s) by which the surface of a round obstacle that turns moves along at the contact, beside that of its axis.
     pub(super) drag: DVec3,
-    /// What has to be added to their speed (m/s) for the one that decides the rebound.
-    pub(super) to_rebound: f64,
-    /// What has to be added to their speed (m/s) for the mean one in the step.
-    pub(super) to_path: f64,
     /// Where its terms begin and end.
     pub(super) terms: [u32; 2],
 }
@@ -74,6 +65,8 @@ pub(super) struct Moved<'a> {
     pub(super) inverse_mass: &'a [f64],
     pub(super) position: &'a mut [DVec3],
     pub(super) velocity: &'a mut [DVec3],
+    /// The velocities at the start of the step minus those at its end, before contact (m/s).
+    pub(super) slowed: &'a [DVec3],
     /// Positions (m) and velocities (m/s) of the points of obstacles, whose numbers follow those of nodes.
     pub(super) obstacles: [&'a [DVec3]; 2],
     /// ΔT (s).
@@ -107,8 +100,8 @@ impl Moved<'_> {
     }
 
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.
-    pub(super) fn resolve(&mut self, touch: &Touch, terms: &[Term]) -> DVec3 {
-        let Touch { law: Law { gap, restitution, friction }, normal, distance, .. } = *touch;
+    pub(super) fn resolve(&mut self, law: Law, touch: &Touch, terms: &[Term]) -> DVec3 {
+        let (Law { gap, restitution, friction }, Touch { normal, distance, drag, .. }) = (law, *touch);
         let (mut way, mut speed) = (DVec3::ZERO, DVec3::ZERO);
         for &Term { node, weight } in terms {
             way += self.place(node) * weight;
@@ -118,21 +111,30 @@ impl Moved<'_> {
         if reached >= gap {
             return DVec3::ZERO;
         }
-        let relative = speed - touch.drag;
-        let along = normal.dot(relative);
-        // The speed that leaves the pair as near as it may come, and the one that throws it back.
-        let apart = (gap.min(distance) - distance) / self.step - (along + touch.to_path);
-        let back = -(1.0 + restitution) * (along + touch.to_rebound);
-        let kick = apart.max(back).max(0.0);
-        let short = (gap - reached - self.step * kick).max(0.0);
-        if kick == 0.0 && short == 0.0 {
+        let (mut mobility, mut is_free, mut slowed) = (0.0, true, DVec3::ZERO);
+        for &Term { node, weight } in terms {
+            let own = self.mobility(node);
+            mobility += weight * weight * own;
+            is_free &= own > 0.0;
+            slowed += self.slowed.get(node as usize).map_or(DVec3::ZERO, |&slowed| slowed * weight);
+        }
+        if mobility == 0.0 {
             return DVec3::ZERO;
         }
+        let relative = speed - drag;
+        let along = normal.dot(relative);
+        // The speeds that decide the rebound, and the mean one in the step.
+        let [bounced, moved] = self.timing.lags().map(|lag| along + lag * normal.dot(slowed));
+        // The speed that leaves the pair as near as it may come, and the one that throws it back.
+        let apart = (gap.min(distance) - distance) / self.step - moved;
+        let back = -(1.0 + restitution) * bounced;
+        let kick = apart.max(back).max(0.0);
+        let short = (gap - reached - self.step * kick).max(0.0);
         let slip = relative - normal * along;
         let slip_speed = slip.length();
         let hold = if slip_speed > 0.0 { (friction * kick / slip_speed).min(1.0) } else { 0.0 };
-        let impulse = (normal * kick - slip * hold) / touch.mobility;
-        let out = normal * (short / touch.mobility);
+        let impulse = (normal * kick - slip * hold) / mobility;
+        let out = normal * (short / mobility);
         for &Term { node, weight } in terms {
             let share = weight * self.mobility(node);
             if share != 0.0 {
@@ -141,9 +143,9 @@ impl Moved<'_> {
                 self.mark(node);
             }
         }
-        if self.timing == Timing::End && touch.is_free {
+        if self.timing == Timing::End && is_free {
             // The change of Σ m x × v by the impulse and by the push.
-            let torque = (way - speed * self.step).cross(impulse) + out.cross(speed + impulse * touch.mobility);
+            let torque = (way - speed * self.step).cross(impulse) + out.cross(speed + impulse * mobility);
             // Without friction only the round-off of positions is left.
             let round_off = 8.0 * f64::EPSILON * self.place(terms[0].node).length() * impulse.length();
             if torque.length_squared() > round_off * round_off {

@@ -52,9 +52,8 @@ struct Known {
     /// The points of the surfaces in pairs.
     placed: Vec<Vec<DVec3>>,
     inverse_mass: Vec<f64>,
-    /// The velocities at the start of the step minus those at its end (m/s), of nodes and of points of obstacles.
+    /// The velocities at the start of the step minus those at its end (m/s), of nodes of surfaces.
     slowed: Vec<DVec3>,
-    still: Vec<DVec3>,
     /// Whether each node was changed in this step.
     is_changed: Vec<bool>,
 }
@@ -219,15 +218,11 @@ impl Stage {
         for node in self.nodes.iter().map(|&node| node as usize) {
             known.slowed[node] = before.velocity[node] - velocity[node];
         }
-        known.still.resize(moved.len(), DVec3::ZERO);
         let seen = Seen {
             surfaces: &self.surfaces,
             rest: Places { nodes: &self.rest, obstacles: &[] },
             start: &known.placed,
             drag: &|surface, at, out| self.drag(surface, interval, at, out),
-            slowed: Places { nodes: &known.slowed, obstacles: &known.still },
-            inverse_mass: &known.inverse_mass,
-            timing,
         };
         let [since, ahead] = &known.moved;
         let relative = |ways: &[Way], [one, other]: [usize; 2]| ways[one].relative(ways[other]);
@@ -240,14 +235,14 @@ impl Stage {
         known.is_changed.resize(position.len(), false);
         let obstacles = [&moved[..], &speed[..]];
         let (inverse_mass, is_changed) = (&known.inverse_mass[..], &mut known.is_changed[..]);
-        let step = interval.step;
-        let mut nodes = Moved { inverse_mass, position, velocity, obstacles, step, timing, is_changed, changed };
-        let points = known.pairs.iter().map(|pair| (&pair.touches.of_points, &pair.touches.terms));
-        let edges = known.pairs.iter().map(|pair| (&pair.touches.of_edges, &pair.touches.terms));
-        for (touches, terms) in points.chain(edges) {
+        let (step, slowed) = (interval.step, &known.slowed[..]);
+        let mut nodes = Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
+        let points = known.pairs.iter().map(|pair| (pair, &pair.touches.of_points));
+        let edges = known.pairs.iter().map(|pair| (pair, &pair.touches.of_edges));
+        for (pair, touches) in points.chain(edges) {
             for touch in touches {
                 let [first, last] = touch.terms.map(|at| at as usize);
-                nodes.resolve(touch, &terms[first..last]);
+                nodes.resolve(pair.law, touch, &pair.touches.terms[first..last]);
             }
         }
     }

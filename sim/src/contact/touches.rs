@@ -2,9 +2,8 @@
 
 use super::features::{Closest, Kind};
 use super::pair::Seen;
-use super::rule::{Law, Term, Touch};
+use super::rule::{Term, Touch};
 use super::surface::Surface;
-use glam::DVec3;
 
 /// What touches in a step: points with facets, and edges, each in the order of features.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +18,6 @@ pub(super) struct Sides<'a> {
     pub(super) kind: Kind,
     /// Their numbers.
     pub(super) of: [usize; 2],
-    pub(super) law: Law,
     pub(super) seen: &'a Seen<'a>,
 }
 
@@ -32,7 +30,7 @@ impl Touches {
 
     /// Adds a pair of closest points.
     pub(super) fn push(&mut self, sides: &Sides<'_>, [first, second]: [u32; 2], closest: &Closest) {
-        let Sides { kind, of, law, seen } = *sides;
+        let Sides { kind, of, seen } = *sides;
         let [one, other] = of.map(|surface| &seen.surfaces[surface]);
         let begin = self.terms.len();
         let [mine, theirs] = closest.shares;
@@ -49,25 +47,13 @@ impl Touches {
                 sign
             }
         };
-        let (mut mobility, mut is_free, mut slowed) = (0.0, true, DVec3::ZERO);
-        for &Term { node, weight } in &self.terms[begin..] {
-            let inverse_mass = seen.inverse_mass.get(node as usize).copied().unwrap_or(0.0);
-            mobility += weight * weight * inverse_mass;
-            is_free &= inverse_mass > 0.0;
-            slowed += seen.slowed.node(node) * weight;
-        }
-        if mobility == 0.0 {
-            self.terms.truncate(begin);
-            return;
-        }
         let distance = closest.way.length();
         let normal = closest.way * (sign / distance);
-        let [to_rebound, to_path] = seen.timing.lags().map(|lag| lag * normal.dot(slowed));
         let there = if sign > 0.0 { closest.here - closest.way } else { closest.here };
         let drag = (seen.drag)(of[1], there, normal * other.thickness);
         let terms = [begin, self.terms.len()].map(|at| at as u32);
         let list = if kind == Kind::Edges { &mut self.of_edges } else { &mut self.of_points };
-        list.push(Touch { law, normal, distance, mobility, is_free, drag, to_rebound, to_path, terms });
+        list.push(Touch { normal, distance, drag, terms });
     }
 
     /// Adds the nodes of a feature with these corners, each once, with their weights in a point that has such shares of the corners, times a
