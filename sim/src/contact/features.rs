@@ -1,6 +1,7 @@
 //! The closest points of two features, and whether contact counts there.
 
 use super::closest::{self, On};
+use super::shown::Shown;
 use super::surface::Surface;
 use glam::DVec3;
 
@@ -16,16 +17,16 @@ pub(super) enum Kind {
     Edges,
 }
 
-/// A surface with the places of its points (m).
+/// A surface at the start of a step.
 #[derive(Clone, Copy)]
 pub(super) struct Placed<'a> {
     pub(super) surface: &'a Surface,
-    pub(super) at: &'a [DVec3],
+    pub(super) at: &'a Shown,
 }
 
 impl Placed<'_> {
     pub(super) fn point(&self, point: u32) -> DVec3 {
-        self.at[point as usize]
+        self.at.points[point as usize]
     }
 }
 
@@ -48,6 +49,14 @@ const LEVER: f64 = 6.0;
 
 impl Kind {
     pub(super) const ALL: [Self; 3] = [Self::Point { of: 0 }, Self::Point { of: 1 }, Self::Edges];
+
+    /// The way (m) until two features can be a contact, if they are both flat edges: points and facets meet there.
+    pub(super) fn flat_for(self, [one, other]: [Placed<'_>; 2], [first, second]: [u32; 2]) -> Option<f64> {
+        if self != Self::Edges {
+            return None;
+        }
+        Some(one.at.stays_flat(first)?.min(other.at.stays_flat(second)?))
+    }
 
     /// The closest points of two features. Those farther than `far` (m) from each other are no contact.
     pub(super) fn closest(self, placed: [Placed<'_>; 2], is_same: bool, features: [u32; 2], far: f64) -> Closest {
@@ -105,7 +114,7 @@ fn point_facet(
     Closest { here, way, shares: [[1.0, 0.0, 0.0], nearest.shares], rests }
 }
 
-/// Edges that cross each other. Two that are both flat do not count: points and facets meet there.
+/// Edges that cross each other.
 fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2], far: f64) -> Closest {
     /// The least squared sine of the angle between them: parallel edges meet with their ends.
     const LEAST_SINE: f64 = 1e-6;
@@ -120,14 +129,6 @@ fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2], far: f64) -> 
         return closest(0.0);
     }
     let along = [mine[1] - mine[0], theirs[1] - theirs[0]];
-    let flat = |placed: Placed<'_>, edge: u32, from: DVec3, along: DVec3| {
-        flat_for(along, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
-    };
-    let my_flat = flat(one, first, here, along[0]);
-    let flat = if my_flat > 0.0 { my_flat.min(flat(other, second, there, along[1])) } else { 0.0 };
-    if flat > 0.0 {
-        return closest(flat / LEVER);
-    }
     let towards = |placed: Placed<'_>, edge: u32, from: DVec3, way: DVec3| {
         closest::towards(way, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
     };
@@ -151,18 +152,4 @@ fn past_ends([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], sine: f64) -> f64 {
     let past = |share: f64, squared: f64| (-share).max(share - 1.0) * squared.sqrt();
     let past = past(s, aa).max(past(t, cc)).min(aa.min(cc).sqrt());
     if past > 0.0 { 0.5 * past * sine } else { 0.0 }
-}
-
-/// How far a corner has to move (m) until two triangles do not continue each other at an edge; zero if they do not.
-fn flat_for(along: DVec3, from: DVec3, mut wings: impl Iterator<Item = DVec3>) -> f64 {
-    /// The sine of the angle between them from which on they do not.
-    const BEND: f64 = 0.1;
-    let (Some(first), Some(second), None) = (wings.next(), wings.next(), wings.next()) else { return 0.0 };
-    let [one, other] = [first, second].map(|corner| (corner - from).cross(along));
-    let (areas, across) = (one.length_squared() * other.length_squared(), one.cross(other).length_squared());
-    if one.dot(other) >= 0.0 || across >= BEND * BEND * areas || areas.is_nan() {
-        return 0.0;
-    }
-    let bend = (across / areas).sqrt();
-    (BEND - bend) * one.length().min(other.length()) / along.length()
 }

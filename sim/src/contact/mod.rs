@@ -13,6 +13,7 @@ mod obstacle;
 mod pair;
 mod rule;
 mod shape;
+mod shown;
 mod stage;
 mod surface;
 mod touches;

@@ -4,6 +4,7 @@ use super::candidates::Candidates;
 use super::extent::{Extent, near, sweep};
 use super::features::{Kind, Placed};
 use super::rule::Law;
+use super::shown::Shown;
 use super::surface::Surface;
 use super::touches::{Sides, Touches};
 use crate::carried::Weights;
@@ -52,8 +53,8 @@ pub(super) struct Seen<'a> {
     pub(super) surfaces: &'a [Surface],
     /// Nodes at rest (m), for bodies that meet themselves.
     pub(super) rest: Places<'a>,
-    /// The points of each surface at the start of the step (m); of those in pairs.
-    pub(super) start: &'a [Vec<DVec3>],
+    /// The surfaces at the start of the step; of those in pairs.
+    pub(super) start: &'a [Shown],
     /// See [`Touch::drag`](super::rule::Touch::drag): for a surface, a point on its axis (m), and the way from there to its surface (m).
     pub(super) drag: &'a (dyn Fn(usize, DVec3, DVec3) -> DVec3 + Sync),
 }
@@ -87,7 +88,7 @@ impl Pair {
         let skin = (SKIN[0] * (one.surface.thickness + other.surface.thickness)).max(SKIN[1] * ahead);
         let reach = self.law.gap + skin;
         self.candidates.iter_mut().for_each(|list| list.renew(std::iter::empty()));
-        let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.iter().copied()));
+        let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.points.iter().copied()));
         let apart = mine.distance(&theirs);
         if apart >= reach && self.of[0] != self.of[1] {
             self.until = Some(self.way + (apart - self.law.gap));
@@ -98,7 +99,7 @@ impl Pair {
         let lists = |placed: Placed<'_>| {
             let around = |points: &[u32]| Extent::around(points.iter().map(|&point| placed.point(point)));
             let points =
-                (0u32..).zip(placed.at).map(|(number, &point)| (number, Extent::around(std::iter::once(point))));
+                (0u32..).zip(&placed.at.points).map(|(number, &point)| (number, Extent::around(std::iter::once(point))));
             let facets = (0u32..).zip(&placed.surface.facets).map(|(number, facet)| (number, around(facet.used())));
             let edges = (0u32..).zip(&placed.surface.edges).map(|(number, ends)| (number, around(ends)));
             [near(points, &common), near(facets, &common), near(edges, &common)]
@@ -116,8 +117,8 @@ impl Pair {
             let mut found = Vec::new();
             sweep(sides, reach, axis, |features| found.push(features));
             if self.of[0] == self.of[1] {
-                let points = 0..one.surface.points.len() as u32;
-                let at: Vec<DVec3> = points.map(|point| seen.rest.point(&one.surface.points, point)).collect();
+                let mut at = Shown::default();
+                at.place(one.surface, &seen.rest);
                 let rest = Placed { surface: one.surface, at: &at };
                 found.retain(|&features| is_apart_at_rest(rest, kind, features, 2.0 * self.law.gap));
             }
@@ -135,6 +136,9 @@ impl Pair {
         for (kind, list) in Kind::ALL.into_iter().zip(candidates) {
             let sides = Sides { kind, of: *of, seen };
             list.for_each_awake(due, |features| {
+                if let Some(flat) = kind.flat_for(placed, features) {
+                    return *way + flat.max(f64::MIN_POSITIVE);
+                }
                 let closest = kind.closest(placed, is_same, features, far);
                 let distance = closest.way.length();
                 if distance >= far || closest.rests > 0.0 {

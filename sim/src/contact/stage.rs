@@ -3,6 +3,7 @@
 use super::extent::Extent;
 use super::pair::{Pair, Places, Seen};
 use super::rule::{Law, Moved, Timing};
+use super::shown::Shown;
 use super::surface::Surface;
 use super::{Contacts, Obstacle, Side};
 use crate::crew::Crew;
@@ -49,8 +50,7 @@ struct Known {
     pairs: Vec<Pair>,
     /// The way (m) of any two surfaces until others than the pairs may meet.
     left: f64,
-    /// The points of the surfaces in pairs.
-    placed: Vec<Vec<DVec3>>,
+    shown: Vec<Shown>,
     inverse_mass: Vec<f64>,
     /// The velocities at the start of the step minus those at its end (m/s), of nodes of surfaces.
     slowed: Vec<DVec3>,
@@ -175,6 +175,13 @@ impl Stage {
         &self.nodes
     }
 
+    /// A bound of the gaps of all pairs (m).
+    fn widest_gap(&self) -> f64 {
+        let thickest = self.surfaces.iter().fold(0.0, |most: f64, surface| most.max(surface.thickness));
+        let own = self.contacts.pairs.iter().filter_map(|pair| pair.thickness).fold(thickest, f64::max);
+        thickest + own
+    }
+
     /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, which stay as they are.
     pub(crate) fn resolve(&self, end: End<'_>, held: impl Iterator<Item = usize>, crew: &Crew) {
         let End { interval, before, position, velocity, timing, changed } = end;
@@ -206,13 +213,15 @@ impl Stage {
         if known.left < 4.0 * ahead || known.left.is_nan() {
             known.left = self.choose(&start, ahead, &mut known.pairs);
         }
-        known.placed.resize(self.surfaces.len(), Vec::new());
-        known.placed.iter_mut().for_each(Vec::clear);
+        known.shown.resize(self.surfaces.len(), Shown::default());
+        for (shown, way) in known.shown.iter_mut().zip(&known.moved[0]) {
+            shown.go(way.spread);
+        }
+        if is_new {
+            known.shown.iter_mut().for_each(Shown::forget);
+        }
         for surface in known.pairs.iter().flat_map(|pair| pair.of) {
-            let (points, placed) = (&self.surfaces[surface].points, &mut known.placed[surface]);
-            if placed.is_empty() {
-                placed.extend((0..points.len() as u32).map(|point| start.point(points, point)));
-            }
+            known.shown[surface].place(&self.surfaces[surface], &start);
         }
         known.slowed.resize(position.len(), DVec3::ZERO);
         for node in self.nodes.iter().map(|&node| node as usize) {
@@ -221,7 +230,7 @@ impl Stage {
         let seen = Seen {
             surfaces: &self.surfaces,
             rest: Places { nodes: &self.rest, obstacles: &[] },
-            start: &known.placed,
+            start: &known.shown,
             drag: &|surface, at, out| self.drag(surface, interval, at, out),
         };
         let [since, ahead] = &known.moved;
@@ -293,8 +302,7 @@ impl Stage {
         let bodies = &extents[..self.bodies];
         let size = bodies.iter().map(|extent| extent.size().max_element()).sum::<f64>() / self.bodies as f64;
         let margin = (0.1 * size).max(16.0 * ahead);
-        let thickest = self.surfaces.iter().fold(0.0, |most: f64, surface| most.max(surface.thickness));
-        let reach = margin + 2.0 * thickest;
+        let reach = margin + self.widest_gap();
         let mut order: Vec<usize> = (0..extents.len()).collect();
         order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
         let mut chosen = Vec::new();
@@ -334,13 +342,22 @@ impl Stage {
         let speeds = self.nodes.iter().map(|&node| at.velocity[node as usize].length_squared());
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let speeds: Vec<f64> = self.obstacles.iter().map(|solid| solid.greatest_speed()).collect();
+        let quickest = speeds.iter().copied().fold(0.0, f64::max);
+        let widest = self.widest_gap();
+        let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN);
+        let mut order: Vec<usize> = (0..extents.len()).collect();
+        order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
         let mut speed = f64::INFINITY;
-        for one in 0..self.bodies {
-            for other in one + 1..extents.len() {
-                let Some(Law { gap, .. }) = self.law(one, other) else { continue };
-                let own = other.checked_sub(self.bodies).map_or(0.0, |solid| speeds[solid]);
-                let way = (extents[one].distance(&extents[other]) - gap) / (most as f64 * interval.step);
-                speed = speed.min((way - own) / (2.0 * THROWN));
+        for (at, &one) in order.iter().enumerate() {
+            for &other in &order[at + 1..] {
+                // No later one is nearer.
+                let least = extents[other].begins() - extents[one].ends() - widest;
+                if speed <= 1.1 * fastest || bearable(least, quickest) >= speed {
+                    break;
+                }
+                let Some(Law { gap, .. }) = self.law(one.min(other), one.max(other)) else { continue };
+                let own = one.max(other).checked_sub(self.bodies).map_or(0.0, |solid| speeds[solid]);
+                speed = speed.min(bearable(extents[one].distance(&extents[other]) - gap, own));
             }
         }
         (speed > 1.1 * fastest).then_some((most, speed))
