@@ -4,6 +4,7 @@
 //! A study has a name, a measurement, and findings: text, tables and pages ([`study`]). It does not depend on files or on the
 //! command line.
 
+mod contact;
 mod folder;
 mod material;
 mod methods;
@@ -26,6 +27,7 @@ mod work_precision;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
+use contact::Contact;
 use localshape::internals::{Failure, ThreadOptions};
 use localshape::{Limits, Scene};
 use material::{Beam, Cook, Patch, Time};
@@ -49,6 +51,7 @@ Examples:
   localshape-study stress                      the robustness of models in output/study-stress/
   localshape-study beam                        how the models bend in output/study-beam/
   localshape-study beam-time                   the error of a beam against time
+  localshape-study contact                     what must hold where bodies meet
   localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
   localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
 
@@ -113,6 +116,11 @@ enum Name {
     },
     /// Cook's membrane in the plane, beside the literature
     Cook {
+        #[command(flatten)]
+        threads: ThreadOptions,
+    },
+    /// Contact: momenta, energies, rest, friction, waves and Hertz's law beside what is asked, and what crosses
+    Contact {
         #[command(flatten)]
         threads: ThreadOptions,
     },
@@ -220,6 +228,7 @@ impl Name {
             Self::Beam { threads } => task(Box::new(Beam::usual()), threads.count(), Vec::new()),
             Self::Patch { threads } => task(Box::new(Patch::usual()), threads.count(), Vec::new()),
             Self::Cook { threads } => task(Box::new(Cook::usual()), threads.count(), Vec::new()),
+            Self::Contact { threads } => task(Box::new(Contact::usual()), threads.count(), Vec::new()),
             Self::BeamTime => task(Box::new(Time::usual()), 1, Vec::new()),
             Self::Table1 { orientations, threads } => {
                 let arguments = repeated("--orientations", &[orientations.to_string()]);

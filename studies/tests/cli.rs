@@ -105,8 +105,19 @@ fn skipped(why: &str) {
 fn help_and_version_are_results() {
     let place = Place::new();
     let help = place.good("--help");
-    let studies =
-        ["rotation", "work-precision", "stability", "stress", "beam", "patch", "cook", "beam-time", "table1", "ratio"];
+    let studies = [
+        "rotation",
+        "work-precision",
+        "stability",
+        "stress",
+        "beam",
+        "patch",
+        "cook",
+        "contact",
+        "beam-time",
+        "table1",
+        "ratio",
+    ];
     for word in studies.iter().chain(&["Exit status:", "130", "Examples:"]) {
         assert!(help.contains(word), "{word}");
     }

@@ -6,7 +6,7 @@ use localshape::sim::{Body, Dimension, Nodes};
 use std::sync::Arc;
 
 /// The forces of a model on a body that does not move, with the memory that goes with them.
-pub(super) struct Forces {
+pub(crate) struct Forces {
     forces: Box<dyn ForceModel>,
     memory: Vec<f64>,
     next: Vec<f64>,
@@ -15,14 +15,14 @@ pub(super) struct Forces {
 }
 
 impl Forces {
-    pub(super) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &[DVec3]) -> Self {
+    pub(crate) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &[DVec3]) -> Self {
         let memory = model.start(body, start);
         let (next, still) = (memory.clone(), vec![DVec3::ZERO; body.len()]);
         Self { forces: model.prepare(body), memory, next, scratch: Scratch::default(), still }
     }
 
     /// The forces on nodes at these places (N).
-    pub(super) fn at(&mut self, position: &[DVec3]) -> Vec<DVec3> {
+    pub(crate) fn at(&mut self, position: &[DVec3]) -> Vec<DVec3> {
         let mut forces = vec![DVec3::ZERO; position.len()];
         let at = Nodes { position, velocity: &self.still };
         self.forces.add_forces(at, &self.memory, &mut self.next, &mut self.scratch, &mut forces);

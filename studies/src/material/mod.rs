@@ -12,6 +12,7 @@ mod patch;
 mod theory;
 mod time;
 
+pub(crate) use balance::Forces;
 pub(crate) use beam::Beam;
 pub(crate) use cook::Cook;
 pub(crate) use patch::Patch;

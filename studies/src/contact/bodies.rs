@@ -1,0 +1,174 @@
+//! Bodies of the study, worlds of them, and the triangles of their surfaces that cross.
+
+use glam::{DQuat, DVec3};
+use localshape::sim::model::ElasticModel;
+use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::{
+    Body, Contacts, FrictionOf, IndexLists, Integrator, Motion, Obstacle, Shape, State, Stepping, Surroundings, World,
+};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The side of a cell (m), and its mass (kg).
+pub(super) const SIDE: f64 = 0.1;
+pub(super) const MASS: f64 = 1.0;
+/// Acceleration of gravity (m/s²).
+pub(super) const GRAVITY: f64 = 9.81;
+
+/// A block of cells around the origin, each of [`MASS`] and in eight parts for its corners, with its nodes moved by `place`, which gets
+/// coordinates from −1 to 1 and places (m).
+pub(super) fn block(cells: [u32; 3], place: impl Fn(DVec3, DVec3) -> DVec3) -> Arc<Body> {
+    let nodes = cells.map(|cells| cells + 1);
+    let number = |at: [u32; 3]| at[0] + nodes[0] * (at[1] + nodes[1] * at[2]);
+    let grid =
+        |[nx, ny, nz]: [u32; 3]| (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let half = DVec3::from_array(cells.map(f64::from)) * 0.5;
+    let rest: Vec<_> = grid(nodes)
+        .map(|at| DVec3::from_array(at.map(f64::from)) - half)
+        .map(|from| place(from / half, from * SIDE))
+        .collect();
+    let mut elements = IndexLists::default();
+    let mut mass = vec![0.0; rest.len()];
+    for cell in grid(cells) {
+        let corners =
+            [0u32, 1, 2, 3, 4, 5, 6, 7].map(|bit| number([0, 1, 2].map(|axis| cell[axis] + (bit >> axis & 1))));
+        corners.iter().for_each(|&node| mass[node as usize] += MASS / 8.0);
+        elements.push(&corners);
+    }
+    Arc::new(Body::builder(rest).elements(elements).masses(mass).build().expect("a block"))
+}
+
+/// A block of cubes.
+pub(super) fn cubes(cells: [u32; 3]) -> Arc<Body> {
+    block(cells, |_, at| at)
+}
+
+/// A body, where it is, how it is turned, and how it moves.
+#[derive(Clone)]
+pub(super) struct Placed {
+    pub(super) body: Arc<Body>,
+    pub(super) at: DVec3,
+    pub(super) turned: DQuat,
+    pub(super) speed: DVec3,
+}
+
+impl Placed {
+    pub(super) fn still(body: &Arc<Body>, at: DVec3) -> Self {
+        Self { body: Arc::clone(body), at, turned: DQuat::IDENTITY, speed: DVec3::ZERO }
+    }
+}
+
+/// What the bodies of a world have in common.
+#[derive(Clone)]
+pub(super) struct Setting {
+    /// The elastic constant of cells (N/m), and their damping constant (N s/m).
+    pub(super) stiffness: f64,
+    pub(super) damping: f64,
+    /// The step as a share of `T = 2π √(m/k)`, with the mass of a cell.
+    pub(super) share: f64,
+    pub(super) around: Surroundings,
+}
+
+impl Setting {
+    /// Bodies that meet with a restitution and a friction, without gravity.
+    pub(super) fn new(stiffness: f64, [restitution, friction]: [f64; 2]) -> Self {
+        let contacts = Contacts { restitution, friction, ..Contacts::default() };
+        let around = Surroundings { contacts: Some(contacts), ..Surroundings::default() };
+        Self { stiffness, damping: 0.0, share: 1.0 / 50.0, around }
+    }
+
+    /// ΔT (s).
+    pub(super) fn step(&self) -> f64 {
+        self.share * TAU * (MASS / self.stiffness).sqrt()
+    }
+
+    /// The number of steps in a time (s).
+    pub(super) fn steps(&self, time: f64) -> u64 {
+        libm::ceil(time / self.step()) as u64
+    }
+
+    pub(super) fn world(&self, bodies: &[Placed]) -> World {
+        let model = ShapeBased { damping: self.damping, ..ShapeBased::new(self.stiffness) };
+        let mut all = State::default();
+        for Placed { body, at, turned, speed } in bodies {
+            all.position.extend(body.rest().iter().map(|&rest| *at + *turned * rest));
+            all.velocity.extend(vec![*speed; body.len()]);
+        }
+        let parts: Vec<_> =
+            bodies.iter().map(|placed| (Arc::clone(&placed.body), &model as &dyn ElasticModel)).collect();
+        let stepping = Stepping::new(Integrator::SemiImplicitEuler, self.step());
+        World::of_parts(&parts, all, self.around.clone(), stepping)
+    }
+}
+
+/// An obstacle at rest.
+pub(super) fn obstacle(shape: Shape, [restitution, friction]: [f64; 2]) -> Obstacle {
+    let friction_of = FrictionOf::default();
+    Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction, friction_of }
+}
+
+/// The places of the nodes of each body in a world.
+pub(super) fn each<'a>(world: &'a World, bodies: &'a [Placed]) -> impl Iterator<Item = (&'a Body, &'a [DVec3])> {
+    let mut first = 0;
+    bodies.iter().map(move |placed| {
+        let own = first..first + placed.body.len();
+        first = own.end;
+        (&*placed.body, &world.state().position[own])
+    })
+}
+
+/// A mean of values of the nodes of a body, by their masses.
+pub(super) fn mean(body: &Body, of: &[DVec3]) -> DVec3 {
+    let sum: DVec3 = of.iter().zip(body.mass()).map(|(&value, &mass)| value * mass).sum();
+    sum / body.mass().iter().sum::<f64>()
+}
+
+/// The triangles of the outer faces of a body, with faces of four corners as fans around their middles.
+fn triangles(body: &Body, at: &[DVec3]) -> Vec<[DVec3; 3]> {
+    let faces = body.faces();
+    let mut all = Vec::new();
+    for face in (0..faces.nodes.len()).filter(|&face| faces.outer[face].is_none()) {
+        let corners: Vec<_> = faces.nodes[face].iter().map(|&node| at[node as usize]).collect();
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        all.extend((0..corners.len()).map(|at| [corners[at], corners[(at + 1) % corners.len()], middle]));
+    }
+    all
+}
+
+fn pierces([from, to]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+    let normal = (b - a).cross(c - a);
+    if normal.dot(from - a) * normal.dot(to - a) >= 0.0 {
+        return false;
+    }
+    let along = to - from;
+    let [a, b, c] = [a, b, c].map(|corner| corner - from);
+    let hands = [a.cross(b), b.cross(c), c.cross(a)].map(|side| along.dot(side));
+    hands.iter().all(|&hand| hand > 0.0) || hands.iter().all(|&hand| hand < 0.0)
+}
+
+fn cross(one: &[DVec3; 3], other: &[DVec3; 3]) -> bool {
+    let sides = |t: &[DVec3; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    let extent = |t: &[DVec3; 3]| (t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2]));
+    let ((low, high), (least, most)) = (extent(one), extent(other));
+    low.cmple(most).all()
+        && least.cmple(high).all()
+        && (sides(one).into_iter().any(|side| pierces(side, *other))
+            || sides(other).into_iter().any(|side| pierces(side, *one)))
+}
+
+/// The pairs of triangles that cross, of different bodies.
+pub(super) fn crossings(world: &World, bodies: &[Placed]) -> usize {
+    let all: Vec<_> = each(world, bodies).map(|(body, at)| triangles(body, at)).collect();
+    let pairs = (0..all.len()).flat_map(|one| (one + 1..all.len()).map(move |other| (one, other)));
+    let count = |(one, other): (usize, usize)| {
+        all[one].iter().map(|mine| all[other].iter().filter(|theirs| cross(mine, theirs)).count()).sum::<usize>()
+    };
+    pairs.map(count).sum()
+}
+
+/// The pairs of triangles that cross, of one body, without those that have a corner in common.
+pub(super) fn own_crossings(body: &Body, at: &[DVec3]) -> usize {
+    let all = triangles(body, at);
+    let pairs = all.iter().enumerate().flat_map(|(at, one)| all[at + 1..].iter().map(move |other| (one, other)));
+    pairs.filter(|(one, other)| !one.iter().any(|a| other.contains(a)) && cross(one, other)).count()
+}
