@@ -1,4 +1,4 @@
-"""Writes scenes/rolling.npz: a rigid disc that rolls down the slope in scenes/slope.toml without sliding.
+"""Writes scenes/contact/rolling.npz: a rigid disc that rolls down the slope in scenes/contact/slope.toml without sliding.
 
 Its centre moves by s = a t²/2 with a = 2/3 g sin θ, and it turns by s/r.
 
@@ -10,7 +10,7 @@ import tomllib
 
 import numpy
 
-scenes = pathlib.Path(__file__).parent.parent / "scenes"
+scenes = pathlib.Path(__file__).parent.parent / "scenes" / "contact"
 scene = tomllib.loads((scenes / "slope.toml").read_text())
 across, up = scene["obstacle"][0]["normal"]
 down = numpy.array([up, -across])
@@ -29,4 +29,4 @@ turns = -ways / radius
 cosine, sine = numpy.cos(turns)[:, None], numpy.sin(turns)[:, None]
 turned = numpy.stack([cosine * arms[:, 0] - sine * arms[:, 1], sine * arms[:, 0] + cosine * arms[:, 1]], axis=2)
 position = centre + ways[:, None, None] * down + turned
-numpy.savez_compressed(scenes / "rolling.npz", time=time, position=position)
+numpy.savez_compressed(scenes / "rolling.npz", time=time, position=position.astype(numpy.float32))

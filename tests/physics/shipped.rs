@@ -124,7 +124,8 @@ fn friction_of_the_path_ends_creep() {
 #[test]
 fn every_shipped_scene_goes_on_from_what_was_written_with_the_same_bits() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let files = ["scenes", "scenes/elements"].map(|folder| std::fs::read_dir(root.join(folder)).expect("scenes"));
+    let folders = ["scenes", "scenes/contact", "scenes/elements"];
+    let files = folders.map(|folder| std::fs::read_dir(root.join(folder)).expect("scenes"));
     let paths = files.into_iter().flatten().map(|entry| entry.expect("an entry").path());
     let mut scenes = 0;
     for path in paths.filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {

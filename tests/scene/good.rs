@@ -42,9 +42,14 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
 #[test]
 fn shipped_scenes_have_no_warnings() {
     let mut read = 0;
-    for folder in
-        ["scenes", "scenes/elements", "tests/golden/primitives", "examples/golden-tests/scenes", "examples/peers"]
-    {
+    for folder in [
+        "scenes",
+        "scenes/contact",
+        "scenes/elements",
+        "tests/golden/primitives",
+        "examples/golden-tests/scenes",
+        "examples/peers",
+    ] {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.extension().is_some_and(|ending| ending == "toml") {
                 let warnings = Scene::load(&path, &Limits::default()).unwrap().warnings;
