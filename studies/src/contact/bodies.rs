@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use localshape::sim::model::ElasticModel;
-use localshape::sim::model::shape_based::ShapeBased;
+use localshape::sim::model::shape_based::{DampingReading, ShapeBased};
 use localshape::sim::{
     Body, Contacts, FrictionOf, IndexLists, Integrator, Motion, Obstacle, Shape, State, Stepping, Surroundings, World,
 };
@@ -61,7 +61,7 @@ impl Placed {
 /// What the bodies of a world have in common.
 #[derive(Clone)]
 pub(super) struct Setting {
-    /// The elastic constant of cells (N/m), and their damping constant (N s/m).
+    /// The elastic constant of cells (N/m), and their damping constant (N s/m), of their deformation.
     pub(super) stiffness: f64,
     pub(super) damping: f64,
     /// The step as a share of `T = 2π √(m/k)`, with the mass of a cell.
@@ -88,7 +88,8 @@ impl Setting {
     }
 
     pub(super) fn world(&self, bodies: &[Placed]) -> World {
-        let model = ShapeBased { damping: self.damping, ..ShapeBased::new(self.stiffness) };
+        let damping_of = DampingReading::Deformation;
+        let model = ShapeBased { damping: self.damping, damping_of, ..ShapeBased::new(self.stiffness) };
         let mut all = State::default();
         for Placed { body, at, turned, speed } in bodies {
             all.position.extend(body.rest().iter().map(|&rest| *at + *turned * rest));

@@ -68,22 +68,25 @@ fn momentum(law: [f64; 2], impacts: u64) -> Vec<Measured> {
 }
 
 fn energy(restitution: f64, parts: u32, impacts: u64) -> Vec<Measured> {
+    // The energy of semi-implicit Euler oscillates with the body, so that a mean over some oscillations counts.
     let mut gained = f64::NEG_INFINITY;
     for seed in 1..=impacts {
         let setting = Setting { share: 1.0 / f64::from(parts), ..Setting::new(1e4, [restitution, 0.0]) };
         let mut world = setting.world(&pair(seed));
         let start = world.diagnostics().energy;
-        for _ in 0..3 * parts {
-            world.advance(2);
-            gained = gained.max(world.diagnostics().energy / start - 1.0);
-        }
+        world.advance(u64::from(6 * parts));
+        let energies = (0..4 * parts).map(|_| {
+            world.advance(1);
+            world.diagnostics().energy
+        });
+        gained = gained.max(energies.sum::<f64>() / f64::from(4 * parts) / start - 1.0);
     }
     let most = match (restitution < 1.0, parts) {
         (true, _) => 0.006,
         (false, 50) => 0.04,
         _ => 0.01,
     };
-    vec![Measured::most(format!("gain of energy, e = {restitution}, ΔT = T/{parts}"), gained, most)]
+    vec![Measured::most(format!("gain of energy at the end, e = {restitution}, ΔT = T/{parts}"), gained, most)]
 }
 
 /// Impacts after which triangles still cross, or numbers are not finite.

@@ -79,41 +79,58 @@ fn acceleration(setting: &Setting, bodies: &[Placed], time: f64) -> f64 {
     (speed() - first) / (setting.steps(time) as f64 * setting.step())
 }
 
+/// A block on a ground that is tilted slowly, so that it is at rest when friction just holds it.
 fn creeps(ground: Ground) -> Vec<Measured> {
-    // The angle at which the friction 0.5 holds just so: tan 26.565° = 0.5.
+    /// The times (s) of tilting, of rest after it, and of measuring.
+    const TIMES: [f64; 3] = [2.0, 1.0, 1.0];
+    // tan 26.565° = 0.5.
     let limit = 26.565f64.to_radians();
     let cases = [
-        ("tan θ = .483, μ = .5", libm::atan(0.483), FRICTION, Some(1e-4)),
-        ("θ = 26.565°, μ = .50", limit, 0.5, Some(1e-4)),
-        ("θ = 26.565°, μ = .49", limit, 0.49, None),
+        ("tan θ = .483, μ = .5", libm::atan(0.483), FRICTION, true),
+        ("θ = 26.565°, μ = .50", limit, 0.5, true),
+        ("θ = 26.565°, μ = .49", limit, 0.49, false),
     ];
-    let case = |(name, angle, friction, most): (&str, f64, f64, Option<f64>)| {
-        let (setting, bodies) = stiff(ground, friction, angle, 0.0);
-        let mut world = setting.world(&bodies);
-        let mut reached = || {
-            world.advance(setting.steps(2.0));
-            way(&world, &bodies[0].body)
+    let case = |(name, angle, friction, holds): (&str, f64, f64, bool)| {
+        let (mut setting, bodies) = stiff(ground, friction, 0.0, 0.0);
+        let body = &bodies[0].body;
+        setting.around.gravity = DVec3::ZERO;
+        let mass = body.mass().to_vec();
+        let tilted = move |time: f64, _: &[DVec3], forces: &mut [DVec3]| {
+            let share = (time / TIMES[0]).min(1.0);
+            let (sine, cosine) = libm::sincos(angle * share * share * (3.0 - 2.0 * share));
+            let down = DVec3::new(sine, -cosine, 0.0) * GRAVITY;
+            forces.iter_mut().zip(&mass).for_each(|(force, mass)| *force += down * *mass);
         };
-        let first = reached();
-        let speed = (reached() - first) / (setting.steps(2.0) as f64 * setting.step());
-        let what = format!("{}: speed (m/s), {name}", ground.name());
+        setting.around.loads = vec![Arc::new(tilted)];
+        let mut world = setting.world(&bodies);
+        world.advance(setting.steps(TIMES[0] + TIMES[1]));
+        let (first, before) = (way(&world, body), mean(body, &world.state().velocity).x);
+        world.advance(setting.steps(TIMES[2]));
+        let passed = setting.steps(TIMES[2]) as f64 * setting.step();
         let (sine, cosine) = libm::sincos(angle);
-        match most {
-            Some(most) => Measured::most(what, speed.abs(), most),
-            // The mean speed from 2 s to 4 s after the start.
-            None => Measured::near(what, speed, GRAVITY * (sine - friction * cosine) * 3.0, 0.05),
+        if holds {
+            let what = format!("{}: speed (m/s), {name}", ground.name());
+            return Measured::most(what, (way(&world, body) - first).abs() / passed, 1e-4);
         }
+        let gained = (mean(body, &world.state().velocity).x - before) / passed;
+        let wanted = GRAVITY * (sine - friction * cosine);
+        Measured::near(format!("{}: acceleration (m/s²), {name}", ground.name()), gained, wanted, 0.01)
     };
     cases.map(case).to_vec()
 }
 
 fn slides(ground: Ground) -> Vec<Measured> {
-    let angle = libm::atan(0.684);
-    let (setting, bodies) = stiff(ground, FRICTION, angle, 0.0);
-    let (sine, cosine) = libm::sincos(angle);
-    let what = format!("{}: acceleration over g (sin θ − μ cos θ), tan θ = .684, μ = .5", ground.name());
-    let wanted = GRAVITY * (sine - FRICTION * cosine);
-    vec![Measured::near(what, acceleration(&setting, &bodies, 0.5) / wanted, 1.0, 0.01)]
+    let slide = |steep: f64| {
+        let angle = libm::atan(steep);
+        let (setting, bodies) = stiff(ground, FRICTION, angle, 0.0);
+        let (sine, cosine) = libm::sincos(angle);
+        let what = format!("{}: acceleration over g (sin θ − μ cos θ), tan θ = {steep}, μ = .5", ground.name());
+        let wanted = GRAVITY * (sine - FRICTION * cosine);
+        let found = acceleration(&setting, &bodies, 0.5);
+        let axes = ["tan θ", "acceleration (m/s²)"];
+        Measured::near(what, found / wanted, 1.0, 0.01).at("Sliding, μ = 0.5", axes, ground.name(), [steep, found])
+    };
+    [0.55, 0.6, 0.684, 0.8].map(slide).to_vec()
 }
 
 fn stops(ground: Ground) -> Vec<Measured> {
