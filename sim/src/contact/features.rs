@@ -1,7 +1,6 @@
 //! The closest points of two features, and whether contact counts there.
 
 use super::closest::{self, On};
-use super::shown::Shown;
 use super::surface::Surface;
 use glam::DVec3;
 
@@ -17,16 +16,16 @@ pub(super) enum Kind {
     Edges,
 }
 
-/// A surface at the start of a step.
+/// A surface with the places of its points (m).
 #[derive(Clone, Copy)]
 pub(super) struct Placed<'a> {
     pub(super) surface: &'a Surface,
-    pub(super) at: &'a Shown,
+    pub(super) at: &'a [DVec3],
 }
 
 impl Placed<'_> {
     pub(super) fn point(&self, point: u32) -> DVec3 {
-        self.at.points[point as usize]
+        self.at[point as usize]
     }
 }
 
@@ -49,14 +48,6 @@ const LEVER: f64 = 6.0;
 
 impl Kind {
     pub(super) const ALL: [Self; 3] = [Self::Point { of: 0 }, Self::Point { of: 1 }, Self::Edges];
-
-    /// The way (m) until two features can be a contact, if they are both flat edges: points and facets meet there.
-    pub(super) fn flat_for(self, [one, other]: [Placed<'_>; 2], [first, second]: [u32; 2]) -> Option<f64> {
-        if self != Self::Edges {
-            return None;
-        }
-        Some(one.at.stays_flat(first)?.min(other.at.stays_flat(second)?))
-    }
 
     /// The closest points of two features. Those farther than `far` (m) from each other are no contact.
     pub(super) fn closest(self, placed: [Placed<'_>; 2], is_same: bool, features: [u32; 2], far: f64) -> Closest {

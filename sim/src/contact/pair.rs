@@ -61,7 +61,7 @@ pub(super) struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     fn placed(&self, surface: usize) -> Placed<'a> {
-        Placed { surface: &self.surfaces[surface], at: &self.start[surface] }
+        Placed { surface: &self.surfaces[surface], at: &self.start[surface].points }
     }
 }
 
@@ -88,7 +88,7 @@ impl Pair {
         let skin = (SKIN[0] * (one.surface.thickness + other.surface.thickness)).max(SKIN[1] * ahead);
         let reach = self.law.gap + skin;
         self.candidates.iter_mut().for_each(|list| list.renew(std::iter::empty()));
-        let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.points.iter().copied()));
+        let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.iter().copied()));
         let apart = mine.distance(&theirs);
         if apart >= reach && self.of[0] != self.of[1] {
             self.until = Some(self.way + (apart - self.law.gap));
@@ -99,7 +99,7 @@ impl Pair {
         let lists = |placed: Placed<'_>| {
             let around = |points: &[u32]| Extent::around(points.iter().map(|&point| placed.point(point)));
             let points =
-                (0u32..).zip(&placed.at.points).map(|(number, &point)| (number, Extent::around(std::iter::once(point))));
+                (0u32..).zip(placed.at).map(|(number, &point)| (number, Extent::around(std::iter::once(point))));
             let facets = (0u32..).zip(&placed.surface.facets).map(|(number, facet)| (number, around(facet.used())));
             let edges = (0u32..).zip(&placed.surface.edges).map(|(number, ends)| (number, around(ends)));
             [near(points, &common), near(facets, &common), near(edges, &common)]
@@ -119,7 +119,7 @@ impl Pair {
             if self.of[0] == self.of[1] {
                 let mut at = Shown::default();
                 at.place(one.surface, &seen.rest);
-                let rest = Placed { surface: one.surface, at: &at };
+                let rest = Placed { surface: one.surface, at: &at.points };
                 found.retain(|&features| is_apart_at_rest(rest, kind, features, 2.0 * self.law.gap));
             }
             found.sort_unstable();
@@ -132,12 +132,15 @@ impl Pair {
         let Self { of, law, way, candidates, touches, .. } = self;
         touches.clear();
         let (placed, is_same) = (of.map(|surface| seen.placed(surface)), of[0] == of[1]);
+        let shown = of.map(|surface| &seen.start[surface]);
         let (due, far) = (*way + 2.0 * ahead, law.gap + 2.0 * ahead);
         for (kind, list) in Kind::ALL.into_iter().zip(candidates) {
             let sides = Sides { kind, of: *of, seen };
             list.for_each_awake(due, |features| {
-                if let Some(flat) = kind.flat_for(placed, features) {
-                    return *way + flat.max(f64::MIN_POSITIVE);
+                // Points and facets meet where two edges are flat.
+                let flat = (kind == Kind::Edges).then(|| [0, 1].map(|side| shown[side].stays_flat(features[side])));
+                if let Some([Some(one), Some(other)]) = flat {
+                    return *way + one.min(other).max(f64::MIN_POSITIVE);
                 }
                 let closest = kind.closest(placed, is_same, features, far);
                 let distance = closest.way.length();
