@@ -7,6 +7,7 @@
 mod bound;
 mod candidates;
 mod closest;
+mod cross;
 mod extent;
 mod features;
 mod obstacle;

@@ -1,6 +1,8 @@
 //! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
 
+use super::cross::crossings;
 use super::extent::Extent;
+use super::features::Placed;
 use super::pair::{Pair, Places, Seen};
 use super::rule::{Law, Moved, Timing};
 use super::shown::Shown;
@@ -325,6 +327,30 @@ impl Stage {
             }
         }
         margin
+    }
+
+    /// The number of pairs of facets that cross at a time (s), of surfaces that meet; with positions of all nodes (m).
+    pub(crate) fn crossings(&self, position: &[DVec3], time: f64) -> usize {
+        let mut obstacles = [const { Vec::new() }; 3];
+        self.place_obstacles(Interval { begin: time, end: time, step: 1.0 }, &mut obstacles);
+        let places = Places { nodes: position, obstacles: &obstacles[0] };
+        let placed = |surface: &Surface| -> Vec<DVec3> {
+            (0..surface.points.len() as u32).map(|point| places.point(&surface.points, point)).collect()
+        };
+        let at: Vec<_> = self.surfaces.iter().map(placed).collect();
+        let extents: Vec<_> = at.iter().map(|points| Extent::around(points.iter().copied())).collect();
+        let mut count = 0;
+        for one in 0..self.bodies {
+            for other in one..extents.len() {
+                let [mine, theirs] =
+                    [one, other].map(|number| Placed { surface: &self.surfaces[number], at: &at[number] });
+                let is_near = extents[one].distance(&extents[other]) <= mine.radius() + theirs.radius();
+                if is_near && self.law(one, other).is_some() {
+                    count += crossings([mine, theirs]).len();
+                }
+            }
+        }
+        count
     }
 
     /// How many steps of ΔT (s), at most `most`, bodies can take alone, and the speed (m/s) up to which they can: above it they might

@@ -383,6 +383,14 @@ impl World {
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
     }
 
+    /// The number of pairs of facets of surfaces that meet, of bodies and obstacles, and cross each other in the present state; 0 in a world
+    /// where no surfaces meet.
+    pub fn crossings(&self) -> usize {
+        let Self { system: System { contact, step, .. }, state, .. } = self;
+        let time = state.steps as f64 * step;
+        contact.as_ref().map_or(0, |stage| stage.crossings(&state.position, time))
+    }
+
     /// The internal forces on each node in the present state (N).
     pub fn forces(&self) -> Vec<glam::DVec3> {
         let Self { system, state, .. } = self;
