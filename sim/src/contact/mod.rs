@@ -12,6 +12,8 @@ mod extent;
 mod features;
 mod obstacle;
 mod pair;
+#[cfg(test)]
+mod queries;
 mod rule;
 mod shape;
 mod shown;

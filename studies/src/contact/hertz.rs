@@ -18,12 +18,12 @@ use std::sync::Arc;
 /// The radius of the ball (m), how deep it is pressed (m), and half of the width of the block, its height (m).
 const RADIUS: f64 = 1.0;
 const DEEP: [f64; 3] = [0.01, 0.02, 0.04];
-const WIDE: f64 = 4.0;
+const WIDE: f64 = 2.5;
 /// Young's modulus (Pa), and the steps of each depth.
 const YOUNG: f64 = 1.0;
-const STEPS: u64 = 1000;
+const STEPS: u64 = 2000;
 /// How much cells grow outwards.
-const GROWTH: f64 = 4.5;
+const GROWTH: f64 = 2.5;
 
 pub(super) fn trials(refined: u32) -> Vec<Trial> {
     (0..refined.min(3)).map(|at| Trial::new("hertz", move || pressed(16 + 8 * at))).collect()
@@ -114,8 +114,8 @@ fn pressed(cells: u32) -> Vec<Measured> {
 fn rest(world: &mut World, cells: u32) {
     /// Steps between two cuts of the velocities.
     const BETWEEN: u64 = 10;
-    // Waves pass √(1/8) of a brick in a step, and the slowest one is four heights long.
-    let slowest = std::f64::consts::PI / f64::from(cells) * 0.125f64.sqrt();
+    // Waves pass √(1/8) of a brick in a step, less along the longer sides of bricks. The slowest one is four heights long.
+    let slowest = 0.5 * std::f64::consts::PI / f64::from(cells) * 0.125f64.sqrt();
     let left = libm::exp(-2.0 * slowest * BETWEEN as f64);
     for _ in 0..STEPS / BETWEEN {
         world.advance(BETWEEN);

@@ -6,7 +6,7 @@ use glam::DVec3;
 use localshape::sim::{Body, Shape, World};
 use std::sync::Arc;
 
-/// The time (s) in which they settle.
+/// The longest time (s) in which they settle.
 const SETTLING: f64 = 5.0;
 
 /// A pile of ten blocks for a time (s) with three restitutions, and a tower of ten.
@@ -40,7 +40,7 @@ fn stay(name: &str, body: &Arc<Body>, at: &[DVec3], stiffness: f64, restitution:
     let floor = Shape::Floor { normal: DVec3::Y, height: 0.0 };
     setting.around.obstacles = vec![obstacle(floor, [restitution, 0.5])];
     let mut world = setting.world(&bodies);
-    world.advance(setting.steps(SETTLING));
+    world.advance(setting.steps(SETTLING.min(time)));
     let centres = |world: &World| each(world, &bodies).map(|(body, at)| mean(body, at)).collect::<Vec<_>>();
     let momentum = |world: &World| {
         let masses = bodies.iter().flat_map(|placed| placed.body.mass());

@@ -5,7 +5,7 @@ use crate::reading::documented;
 
 #[test]
 fn what_must_hold_holds_in_small() {
-    let study = Contact { impacts: 2, rest: 1.0, refined: 1, periods: 2, starts: 1 };
+    let study = Contact { impacts: 2, rest: 0.2, refined: 1, periods: 2, starts: 1 };
     let results = measure(&study, &|_| true).expect("nobody stops it");
     assert!(results.all.len() > 50);
     for (group, one) in &results.all {
