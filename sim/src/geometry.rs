@@ -4,7 +4,6 @@ pub use super::alike::Alike;
 pub use super::contact::ground;
 pub use super::element::{around, kind, ordered};
 pub use super::hull::bounds;
-pub use super::overlap::overlaps;
 pub use super::volume::{node_volumes, volume_by_faces, volumes_at_rest};
 
 use super::body::Body;

@@ -50,7 +50,6 @@ mod material;
 mod mode;
 pub mod model;
 mod motion;
-mod overlap;
 mod part;
 mod placement;
 mod recording;
@@ -68,7 +67,9 @@ mod world;
 pub use assembly::Assembly;
 pub use body::{Body, BodyError, NewBody};
 pub use carried::{Carried, Weights};
-pub use contact::{BodyContact, Contact, Contacts, FrictionOf, Obstacle, PairContact, Placed, Shape, Side};
+pub use contact::{
+    BodyContact, Contact, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed, Shape, Side, Surfaces,
+};
 pub use crew::Crew;
 pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};
 pub use element::{Dimension, ElementKind, Solids};

@@ -2,8 +2,8 @@
 
 use crate::reading::words::short;
 use crate::scene::Scene;
-use crate::sim::geometry::overlaps;
-use crate::sim::{Moment, State, Status, World};
+use crate::sim::{Contacts, Moment, Overlap, Side, State, Status, Surfaces, World};
+use glam::DVec3;
 use std::collections::BTreeSet;
 
 /// Watches a run until two of its bodies overlap that were apart at the start.
@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 /// It looks at steps, however they are divided into calls. Until the next look no node moves, at the present speeds, farther relative
 /// to another than a quarter of an element. Where a look finds an overlap, the steps since the look before are taken again, one by one.
 pub(super) struct Watch {
+    surfaces: Surfaces,
     /// The pairs that overlap at the start, which the check of the scene tells.
     known: BTreeSet<[usize; 2]>,
     /// The least of the mean lengths of edges of each body (m).
@@ -33,10 +34,11 @@ impl Watch {
         if bodies < 2 || run.recording.is_some() || scene.contacts.is_some() {
             return None;
         }
-        let known: BTreeSet<_> = overlaps(&run.bodies, &run.initial.position, |_| true).collect();
+        let surfaces = Surfaces::new(run.bodies.bodies(), &[], &Contacts::default());
+        let known: BTreeSet<_> = overlaps(&surfaces, &run.initial.position, |_| true).collect();
         let side = run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min);
         let is_left = known.len() < bodies * (bodies - 1) / 2;
-        is_left.then(|| Self { known, side, last: world.state().clone(), next: 1 })
+        is_left.then(|| Self { surfaces, known, side, last: world.state().clone(), next: 1 })
     }
 
     /// Goes on from the state of a world, which was looked at before.
@@ -74,11 +76,11 @@ impl Watch {
     /// The message about the first two bodies that overlap in a step since the last look. The world stays as it is.
     pub(super) fn look(&mut self, scene: &Scene, run: usize, world: &mut World) -> Option<String> {
         world.settle();
-        let Self { known, side, last, next } = self;
+        let Self { surfaces, known, side, last, next } = self;
         let (of, is_new) = (&scene.runs[run], |pair: [usize; 2]| !known.contains(&pair));
         let State { position, velocity, .. } = world.state();
-        if overlaps(&of.bodies, position, is_new).next().is_none() {
-            let mean = velocity.iter().sum::<glam::DVec3>() / velocity.len() as f64;
+        if overlaps(surfaces, position, is_new).next().is_none() {
+            let mean = velocity.iter().sum::<DVec3>() / velocity.len() as f64;
             let fastest = velocity.iter().map(|speed| speed.distance(mean)).fold(0.0, f64::max);
             let steps = *side / 4.0 / (2.0 * fastest * of.step);
             last.clone_from(world.state());
@@ -89,7 +91,7 @@ impl Watch {
         world.set_state(last.clone());
         let pair = loop {
             world.advance(1);
-            if let Some(pair) = overlaps(&of.bodies, &world.state().position, is_new).next() {
+            if let Some(pair) = overlaps(surfaces, &world.state().position, is_new).next() {
                 break pair;
             }
         };
@@ -99,6 +101,20 @@ impl Watch {
         let message = format!("“{one}” and “{other}” go through each other from {time} s on in “{name}”");
         Some(format!("{message}: bodies do not collide"))
     }
+}
+
+/// The pairs of bodies among the `wanted` ones that overlap with nodes at given positions (m), in order. Bodies that touch do not overlap.
+fn overlaps(
+    surfaces: &Surfaces,
+    position: &[DVec3],
+    wanted: impl Fn([usize; 2]) -> bool,
+) -> impl Iterator<Item = [usize; 2]> {
+    let pair = |of: [Side; 2]| match of {
+        [Side::Body(one), Side::Body(other)] => Some([one, other]),
+        _ => None,
+    };
+    let found = surfaces.overlaps(position, 0.0, |of| pair(of).is_some_and(&wanted)).into_iter();
+    found.filter(|Overlap { depth, .. }| *depth > 0.0).filter_map(move |Overlap { of, .. }| pair(of))
 }
 
 #[cfg(test)]

@@ -109,6 +109,8 @@ pub struct SceneBody {
     pub body: Arc<Body>,
     /// Its initial positions and velocities.
     pub initial: State,
+    /// The way (m) by which it was moved apart from what it overlapped (`contact.separate`).
+    pub separated: DVec3,
     /// Mean length of its elements' edges (m).
     pub side: f64,
     /// Whether this length is the side of a lattice's cells.

@@ -97,7 +97,7 @@ fn names_of_pairs() {
     );
     case(
         "[[contact.pair]]\nof = ['bar', 'ground']\nfriction = 1",
-        "2:14 \"ground\" is a half-space, which nodes meet, all in the same way give the obstacle its own",
+        "2:14 \"ground\" is a half-space, which all bodies meet in the same way give the obstacle its own",
     );
     case(
         "[[contact.pair]]\nof = ['cube', 'bar']\nfriction = 1\n[[contact.pair]]\nof = ['bar', 'cube']\nfriction = 2",
@@ -151,10 +151,14 @@ fn settings_of_surfaces_beside_nodes() {
 fn bodies_that_overlap_or_touch_at_the_start() {
     let moved = |to: &str| WORLD.replace("offset = [1, 0, 0]", &format!("offset = {to}"));
     // They stand side by side from 0.25 m on.
+    let message = |to: &str| match to {
+        "[0.2, 0, 0]" => {
+            "reach 50 mm into each other at the start, at node 5 of \"bar\": contact cannot part them move"
+        }
+        _ => "touch at the start, at node",
+    };
     for to in ["[0.2, 0, 0]", "[0.25, 0, 0]", "[0, 0.1, 0]", "[0, -0.3, 0]", "[0, 0, -0.2]"] {
-        let message =
-            "8:5 \"bar\" and \"cube\" overlap or touch at the start: contact cannot part them move one of them";
-        expect(&bad(&moved(to)), 0, message);
+        expect(&bad(&moved(to)), 0, &format!("8:5 \"bar\" and \"cube\" {}", message(to)));
         assert_eq!(good(&format!("{}contact.rule = 'nodes'", moved(to))).contacts, None);
     }
     for to in ["[0.26, 0, 0]", "[0, 0.11, 0]", "[0, 0, -0.21]"] {
@@ -162,10 +166,48 @@ fn bodies_that_overlap_or_touch_at_the_start() {
     }
     // Its upper side is at the height of the bar's lower one.
     let stone = |centre: &str| WORLD.replace("[0, -0.8, 0]", centre);
-    let message =
-        "13:5 the body \"bar\" touches this box at the start, with node 1: contact cannot part them leave at least";
+    let message = "13:5 the body \"bar\" touches this box at the start, at node 1 move one of them";
     expect(&bad(&stone("[0, -0.05, 0]")), 0, message);
     good(&stone("[0, -0.06, 0]"));
+    let deep = "13:5 the body \"bar\" reaches 10 mm into this box at the start, at node";
+    expect(&bad(&stone("[0, -0.04, 0]")), 0, deep);
+}
+
+/// The second body goes along the axis on which it is nearest to the side, and `check` tells its way.
+#[test]
+fn bodies_are_moved_apart_where_a_scene_says_so() {
+    let near = WORLD.replace("offset = [1, 0, 0]", "offset = [0.2, 0, 0]");
+    let scene = good(&format!("{near}contact.separate = true"));
+    let way = scene.bodies[1].separated;
+    // 50 mm and the distances that both keep.
+    assert!(scene.bodies[0].separated == glam::DVec3::ZERO && way.x > 0.05 && way.x < 0.06 && way.y == 0.0, "{way}");
+    let before = good(&format!("{near}contact.rule = 'nodes'"));
+    let both = before.bodies[1].initial.position.iter().zip(&scene.bodies[1].initial.position);
+    assert!(both.clone().all(|(&from, &to)| from + way == to));
+    assert_eq!(scene.runs[0].initial.position[12..], scene.bodies[1].initial.position);
+    assert!(scene.summary().to_string().contains("moved by (0.05"), "{}", scene.summary());
+    // Where nothing overlaps nothing moves, and nodes cannot be separated.
+    assert_eq!(good(&format!("{WORLD}contact.separate = true")).bodies[1].separated, glam::DVec3::ZERO);
+    let idle = "1:1 `contact.separate` has no effect, as `contact.rule` is \"nodes\"";
+    case("contact = { separate = true, rule = 'nodes' }", &idle.replacen("1:1", "1:13", 1));
+}
+
+/// The cube has cells of .3 m, the bar of .1 m.
+#[test]
+fn steps_in_which_nodes_move_far_are_told() {
+    let fast = |speed: &str, step: &str| {
+        let moving = WORLD.replace("offset = [1, 0, 0]", &format!("offset = [1, 0, 0], velocity = [-{speed}, 0, 0]"));
+        let mut warnings = good(&moving.replace("duration = 1", &format!("duration = 1, step = {step}"))).warnings;
+        warnings.retain(|warning| warning.message.contains("sideways"));
+        warnings
+    };
+    let found = fast("80", "1e-3");
+    assert_eq!(found.len(), 1, "{found:?}");
+    let expected =
+        "nodes of \"Both\" move 80 mm in a step relative to others, at 80 m/s at the start, and a cell has 100 mm";
+    assert!(found[0].message.starts_with(expected), "{found:?}");
+    assert_eq!(fast("40", "1e-3"), []);
+    assert_eq!(fast("80", "5e-4"), []);
 }
 
 #[test]

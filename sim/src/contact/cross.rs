@@ -59,6 +59,19 @@ impl Corners {
         (0..count).map(|side| [self.at[side], self.at[(side + 1) % 3]])
     }
 
+    /// The unit vector out of a triangle, or of a side of a polygon; not a number for other facets.
+    pub(super) fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.at;
+        let across = if self.count == 3 { (b - a).cross(c - a) } else { (b - a).cross(DVec3::Z) };
+        across.normalize()
+    }
+
+    /// The place under the middle of a triangle, or of a side of a polygon, by a share of the mean length of its sides.
+    pub(super) fn under(&self, share: f64) -> DVec3 {
+        let size = self.sides().map(|[a, b]| a.distance(b)).sum::<f64>() / self.sides().count() as f64;
+        self.all().iter().sum::<DVec3>() / self.count as f64 - self.normal() * (share * size)
+    }
+
     /// Whether a side of one passes through the other. Segments cross in the plane alone.
     pub(super) fn crosses(&self, other: &Self) -> bool {
         match [self.count, other.count] {

@@ -48,6 +48,15 @@ impl Extent {
         (1..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
     }
 
+    pub(super) fn middle(&self) -> DVec3 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// The greatest coordinate (m).
+    pub(super) fn farthest(&self) -> f64 {
+        self.low.abs().max(self.high.abs()).max_element()
+    }
+
     pub(super) fn begins(&self) -> f64 {
         self.low.x
     }

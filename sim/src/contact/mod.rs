@@ -1,8 +1,8 @@
 //! Contact: of nodes with obstacles, as in the paper, and of surfaces with each other.
 //!
 //! A step ends in this order: each node meets the [`Obstacle`]s, which kernels compute while they move it; grips place their nodes; then
-//! surfaces meet ([`Stage`]), by the rule in [`rule`]. Half-spaces are met by nodes, all else by surfaces, unless a world has no
-//! [`Contacts`].
+//! surfaces meet ([`Stage`]), by the rule in [`rule`]. Half-spaces are met by nodes, or by the points of a carried surface, all else by
+//! surfaces, unless a world has no [`Contacts`].
 
 mod bound;
 mod candidates;
@@ -10,11 +10,14 @@ mod closest;
 mod cross;
 mod extent;
 mod features;
+mod inside;
 mod obstacle;
+mod overlap;
 mod pair;
 #[cfg(test)]
 mod queries;
 mod rule;
+mod separate;
 mod shape;
 mod shown;
 mod stage;
@@ -24,6 +27,7 @@ mod touches;
 pub(crate) use bound::{Bound, Floor};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
+pub use overlap::{Overlap, Surfaces};
 pub(crate) use rule::Timing;
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;

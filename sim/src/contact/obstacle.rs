@@ -67,6 +67,14 @@ impl Obstacle {
         Some((normal, normal.dot(pose.apply(pivot, pivot))))
     }
 
+    /// Unit normal and distance from the origin (m) of a half-space at a time (s), a floor or a plate; `None` for other obstacles.
+    pub(super) fn half_space(&self, time: f64) -> Option<(DVec3, f64)> {
+        let (Shape::Floor { normal, .. } | Shape::Plate { normal, .. }) = self.shape else { return None };
+        let pose = self.pose(time);
+        let normal = pose.rotation * normal;
+        Some((normal, normal.dot(pose.apply(self.pivot, self.shape.middle()))))
+    }
+
     /// The obstacle at the end of a step of `step` (s) that ends at `time` (s).
     pub fn at(&self, time: f64, step: f64) -> Placed<'_> {
         let moving = (self.motion != Motion::Still).then(|| Moving {

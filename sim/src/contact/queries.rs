@@ -110,26 +110,20 @@ impl Features {
             return None;
         }
         let law = Law { gap: 0.05 * from[2].distance(from[3]), restitution: 0.0, friction: 0.0 };
-        let touch = Touch {
-            law,
-            normal: way / distance,
-            distance,
-            mobility: weights.iter().map(|weight| weight * weight).sum(),
-            drag: DVec3::ZERO,
-            to_rebound: 0.0,
-            to_path: 0.0,
-            terms: [0, 4],
-        };
+        let touch = Touch { normal: way / distance, distance, drag: DVec3::ZERO, terms: [0, 4] };
         let (mut position, mut velocity) = (to, [0, 1, 2, 3].map(|at| to[at] - from[at]));
         let mut moved = Moved {
             inverse_mass: &[1.0; 4],
             position: &mut position,
             velocity: &mut velocity,
+            slowed: &[DVec3::ZERO; 4],
             obstacles: [&[], &[]],
             step: 1.0,
             timing: Timing::End,
+            is_changed: &mut [false; 4],
+            changed: &mut Vec::new(),
         };
-        moved.resolve(&touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));
+        moved.resolve(law, &touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));
         Some(position)
     }
 }

@@ -121,6 +121,9 @@ impl Shape {
         (first..).zip(&points).for_each(|(node, _)| own.push(&[node], &[1.0]));
         let mut surface = Surface::new(own, facets, if dimension == Dimension::Space { &bars } else { &[] });
         (surface.thickness, surface.is_round) = (radius, radius > 0.0);
+        if matches!(self, Self::Box { .. }) {
+            surface.bounding = (0..surface.facets.len() as u32).collect();
+        }
         Some((surface, points))
     }
 

@@ -25,6 +25,8 @@ pub(crate) struct Surface {
     pub(super) rings: IndexLists,
     /// The nodes, each once.
     pub(super) nodes: Vec<u32>,
+    /// The facets that bound an inside, with their normals out of it: not those of cloths and bars.
+    pub(super) bounding: Vec<u32>,
     /// Half of the distance (m) that is kept from a surface of the same thickness.
     pub(super) thickness: f64,
     /// Whether the thickness is the radius of an obstacle.
@@ -52,13 +54,22 @@ impl Facet {
 }
 
 impl Surface {
-    /// The surface of a body whose first node has the number `first` in its world.
+    /// The surface of a body whose first node has the number `first` in its world, with the usual thickness.
     pub(crate) fn of(body: &Body, first: u32) -> Self {
-        match (&body.carried, body.dimension) {
+        /// The distance that two bodies of equal cells keep, as a share of a cell.
+        const GAP: f64 = 0.05;
+        let made = match (&body.carried, body.dimension) {
             (Some(carried), Dimension::Space) => Self::carried(carried, first),
             (_, Dimension::Space) => Self::in_space(body, first),
             (_, Dimension::Plane) => Self::in_plane(body, first),
-        }
+        };
+        let place = |point: u32| match made.points.of(point as usize) {
+            (&[node], _) => body.rest[(node - first) as usize],
+            (nodes, weights) => {
+                nodes.iter().zip(weights).map(|(&node, &weight)| body.rest[(node - first) as usize] * weight).sum()
+            }
+        };
+        Self { thickness: 0.5 * GAP * made.cell(place), ..made }
     }
 
     fn carried(carried: &Carried, first: u32) -> Self {
@@ -68,7 +79,10 @@ impl Surface {
             points.push(&nodes.iter().map(|node| first + node).collect::<Vec<_>>(), weights);
         }
         let facets = carried.triangles.iter().map(|&corners| (corners, 3)).collect();
-        Self::new(points, facets, &[])
+        let made = Self::new(points, facets, &[]);
+        let is_closed = made.wings.iter().all(|wings| wings.len() % 2 == 0);
+        let bounding = if is_closed { (0..made.facets.len() as u32).collect() } else { Vec::new() };
+        Self { bounding, ..made }
     }
 
     /// The outer faces of elements, triangles and bars.
@@ -77,11 +91,15 @@ impl Surface {
         let faces = body.topology().shared_faces();
         for (face, nodes) in faces.nodes.iter().enumerate() {
             if faces.outer[face].is_none() {
+                let before = made.facets.len() as u32;
                 made.face(nodes);
+                if faces.inner[face].is_some_and(|element| !body.topology().is_flat(element as usize)) {
+                    made.bounding.extend(before..made.facets.len() as u32);
+                }
             }
         }
         made.bars(body);
-        Self::new(made.points, made.facets, &made.bars)
+        Self { bounding: made.bounding, ..Self::new(made.points, made.facets, &made.bars) }
     }
 
     /// The sides of polygons that belong to one polygon only, and bars.
@@ -96,8 +114,10 @@ impl Surface {
             let [a, b] = side.map(|node| made.node(node));
             made.facets.push(([a, b, b], 2));
         }
+        let bounding = (0..made.facets.len() as u32).collect();
         made.bars(body);
-        Self { edges: Vec::new(), wings: IndexLists::default(), ..Self::new(made.points, made.facets, &[]) }
+        let all = Self::new(made.points, made.facets, &[]);
+        Self { edges: Vec::new(), wings: IndexLists::default(), bounding, ..all }
     }
 
     /// A surface of points and facets with so many corners; `bars` are edges without a triangle.
@@ -150,6 +170,7 @@ impl Surface {
             wings: lists(&wings),
             rings: lists(&rings),
             nodes,
+            bounding: Vec::new(),
             thickness: 0.0,
             is_round: false,
         }
@@ -172,12 +193,14 @@ struct Making {
     /// The point of each node.
     known: HashMap<u32, u32>,
     facets: Vec<([u32; 3], u32)>,
+    bounding: Vec<u32>,
     bars: Vec<[u32; 2]>,
 }
 
 impl Making {
     fn new(first: u32) -> Self {
-        Self { first, points: Weights::default(), known: HashMap::new(), facets: Vec::new(), bars: Vec::new() }
+        let points = Weights::default();
+        Self { first, points, known: HashMap::new(), facets: Vec::new(), bounding: Vec::new(), bars: Vec::new() }
     }
 
     /// The point of a node of the body.

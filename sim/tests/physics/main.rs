@@ -25,6 +25,7 @@ mod masses;
 mod material;
 #[cfg(feature = "scene")]
 mod metric;
+mod overlaps;
 mod own_method;
 mod parts;
 mod readings;

@@ -37,6 +37,9 @@ impl ContactBuilder {
         restitution(coefficient: f64) 0.restitution = coefficient;
         /// Coefficient of friction μ between bodies.
         friction(coefficient: f64) 0.friction = coefficient;
+        /// Moves bodies that overlap or touch at the start apart before it, as wholes and by the shortest straight way. Obstacles stay, and of
+        /// two bodies the first.
+        separate() 0.separate = true;
     }
 
     /// Adds a pair that meets otherwise than usual.

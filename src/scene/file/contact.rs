@@ -17,6 +17,11 @@ pub(in crate::scene) struct ContactFile {
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0), extend("default" = 0.0))]
     pub(in crate::scene) friction: f64,
+    /// Whether bodies that overlap or touch at the start are moved apart before it, as wholes and by the shortest straight way, until they
+    /// keep their distances. Obstacles stay, and of two bodies the first. `check` tells the ways.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[schemars(extend("default" = false))]
+    pub(in crate::scene) separate: bool,
     /// Pairs that meet otherwise. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(in crate::scene) pair: Vec<PairFile>,
@@ -31,7 +36,8 @@ fn is_zero(coefficient: &f64) -> bool {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(in crate::scene) enum ContactRule {
-    /// Points meet faces and edges meet edges, of bodies and of obstacles with an extent. Nodes meet floors and plates.
+    /// Points meet faces and edges meet edges, of bodies and of obstacles with an extent. Floors and plates are met by nodes,
+    /// and by the points of a carried surface.
     #[default]
     Surfaces,
     /// Nodes meet obstacles, as in the paper, and nothing else meets: bodies go through each other.

@@ -1,16 +1,17 @@
 //! How surfaces meet: names of pairs, thicknesses, and bodies that overlap at the start.
 
-use super::choice::check_names;
+use super::choice::{Choice, check_names};
+use super::obstacles::shape_name;
 use super::{KeyPath, Typed};
 use crate::reading::captions::quantity;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, list, nearest, quoted};
 use crate::scene::file::{BodyFile, PairFile, ShapeFile};
 use crate::scene::{Scene, SceneBody};
-use crate::sim::geometry::overlaps;
-use crate::sim::{BodyContact, Contacts, PairContact, Shape, Side};
+use crate::sim::{BodyContact, Contacts, Obstacle, Overlap, PairContact, Shape, Side, Surfaces};
 use glam::DVec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Reports names of obstacles that are not unique, or are those of bodies.
 pub(super) fn check_obstacle_names(scene: &Typed<'_>, report: &mut Collector<'_>) {
@@ -53,7 +54,7 @@ pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Coll
 
 /// Reports keys that have no effect where nodes alone meet obstacles.
 fn check_idle(scene: &Typed<'_>, report: &mut Collector<'_>) {
-    let of_contact = ["restitution", "friction", "pair"].map(|key| key_path!["contact", key].to_vec());
+    let of_contact = ["restitution", "friction", "separate", "pair"].map(|key| key_path!["contact", key].to_vec());
     let of_body = |body| ["self_contact", "thickness"].map(|key| key_path![scene.place(body); key].to_vec());
     for path in of_contact.into_iter().chain((0..scene.file.body.len()).flat_map(of_body)) {
         if report.is_typed(&path) {
@@ -139,7 +140,7 @@ fn side(scene: &Typed<'_>, name: &str, path: &[PathPart<'_>], report: &mut Colle
         && let Some(ShapeFile::Floor { .. } | ShapeFile::Plate { .. }) =
             scene.file.obstacle[at].as_ref().map(|obstacle| &obstacle.shape)
     {
-        let message = format!("{} is a half-space, which nodes meet, all in the same way", quoted(name));
+        let message = format!("{} is a half-space, which all bodies meet in the same way", quoted(name));
         report.at(path, message, "give the obstacle its own `restitution` and `friction`");
         return None;
     }
@@ -169,45 +170,125 @@ pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
     }
 }
 
-/// The share of a cell by which bodies, and boxes, are moved to see whether they touch: half of the distance that they keep.
-pub(super) const CLEARANCE: f64 = 0.025;
-
-/// Reports bodies that overlap or touch at the start of a run: contact keeps surfaces apart, but cannot part them.
-pub(super) fn check_starts(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
-    let mut found = BTreeSet::new();
-    let mut known: BTreeSet<&[usize]> = BTreeSet::new();
-    let simulated = scene.runs.iter().filter(|run| run.recording.is_none() && run.of.len() > 1);
-    for run in simulated.filter(|run| known.insert(run.of.as_slice())) {
-        let side = run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min);
-        let mut add = |position: &[DVec3]| {
-            let pairs = overlaps(&run.bodies, position, |_| true);
-            found.extend(pairs.map(|pair| pair.map(|body| run.of[body])));
-        };
-        add(&run.initial.position);
-        // The numbers of any two bodies differ in a bit: those with it are moved, and the others are not. Whichever way two bodies
-        // touch, one of these motions drives them into each other.
-        for bit in 0..usize::BITS - (run.of.len() - 1).leading_zeros() {
-            for way in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]) {
-                let mut moved = run.initial.position.clone();
-                for body in (0..run.of.len()).filter(|body| body >> bit & 1 == 1) {
-                    moved[run.bodies.nodes(body)].iter_mut().for_each(|node| *node += CLEARANCE * side * way);
-                }
-                add(&moved);
-            }
+/// Warns of steps in which nodes move so far relative to others, or to obstacles, at the speeds of the start, that features may pass each
+/// other sideways.
+pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &mut Collector<'_>) {
+    /// The longest way in a step, in cells: above it some facets of blocks that met at random crossed for a few steps (`docs/contact.md`).
+    const LONGEST: f64 = 0.5;
+    let is_solid = |one: &&Obstacle| !matches!(one.shape, Shape::Floor { .. } | Shape::Plate { .. });
+    let stepped = scene.runs.iter().enumerate().filter(|(_, run)| run.recording.is_none() && run.tolerance.is_none());
+    for (at, run) in stepped {
+        let meets_itself = run.contacts(contacts).bodies.iter().any(|body| body.itself);
+        let solids = scene.obstacles.iter().any(|one| is_solid(&one));
+        if run.of.len() < 2 && !solids && !meets_itself {
+            continue;
+        }
+        // Obstacles that rest are there as well.
+        let speeds = run.initial.velocity.iter().copied().chain(solids.then_some(DVec3::ZERO));
+        let [low, high] =
+            speeds.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], speed| [low.min(speed), high.max(speed)]);
+        let (speed, side) =
+            ((high - low).length(), run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min));
+        let most = LONGEST * side / speed;
+        if run.step > most {
+            let [way, cell, speed] =
+                [(speed * run.step, "m"), (side, "m"), (speed, "m/s")].map(|(it, unit)| quantity(it, unit));
+            let message = format!(
+                "nodes of {} move {way} in a step relative to others, at {speed} at the start, and a cell has {cell}: surfaces may cross sideways",
+                quoted(&run.name)
+            );
+            // The run's own step, or that of the scene.
+            let own = key_path!["run", at, "step"];
+            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", "step"] };
+            report.warn(path, message, format!("use a step of at most {most:.3e} s"));
         }
     }
-    let Some(&[first, second]) = found.first() else { return };
-    let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
-    let more = match found.len() - 1 {
-        0 => String::new(),
-        1 => ", and so does another pair".to_owned(),
-        pairs => format!(", and so do {} other pairs", count(pairs as u128)),
-    };
-    let gap = 2.0 * CLEARANCE * scene.bodies[first].side.max(scene.bodies[second].side);
-    let help = format!(
-        "move one of them, with `offset` or `lowest`, until {} lie between them, or write contact.rule = \"nodes\"",
-        quantity(gap, "m")
-    );
-    let message = format!("{one} and {other} overlap or touch at the start{more}: contact cannot part them");
-    report.at(&typed.place(second), message, help);
+}
+
+/// Moves bodies apart that overlap or touch at the start, where the scene says so. Bodies meet those of their runs.
+pub(super) fn separate(
+    scene: &Typed<'_>,
+    bodies: &mut [SceneBody],
+    obstacles: &[Obstacle],
+    contacts: &Contacts,
+    choices: &[Option<Choice<'_>>],
+) {
+    if !scene.file.contact.as_ref().is_some_and(|typed| typed.separate) {
+        return;
+    }
+    let of: Vec<_> = bodies.iter().map(|body| Arc::clone(&body.body)).collect();
+    let mut position: Vec<_> = bodies.iter().flat_map(|body| body.initial.position.iter().copied()).collect();
+    let simulated = || choices.iter().flatten().filter(|choice| !choice.models.is_empty());
+    let meets = |pair: [usize; 2]| simulated().any(|choice| pair.iter().all(|body| choice.of.contains(body)));
+    let ways = Surfaces::new(&of, obstacles, contacts).separate(&mut position, 0.0, meets);
+    let mut moved = position.into_iter();
+    for (body, way) in bodies.iter_mut().zip(ways) {
+        body.separated = way;
+        body.initial.position.iter_mut().zip(&mut moved).for_each(|(node, to)| *node = to);
+    }
+}
+
+/// Reports bodies that overlap or touch each other, or obstacles, at the start of a run: contact keeps surfaces apart, but cannot part
+/// them.
+pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let mut found: BTreeMap<[usize; 2], Overlap> = BTreeMap::new();
+    let mut known: BTreeSet<&[usize]> = BTreeSet::new();
+    for run in scene.runs.iter().filter(|run| run.recording.is_none() && known.insert(run.of.as_slice())) {
+        let surfaces = Surfaces::new(run.bodies.bodies(), &scene.obstacles, &run.contacts(contacts));
+        for overlap in surfaces.overlaps(&run.initial.position, 0.0, |_| true) {
+            // Obstacles are numbered after bodies.
+            let number = |side: Side| match side {
+                Side::Body(body) => run.of[body],
+                Side::Obstacle(number) => scene.bodies.len() + number,
+            };
+            let body = run.bodies.body_of_node(overlap.node);
+            let node = overlap.node - run.bodies.nodes(body).start;
+            let own = Overlap { of: [Side::Body(run.of[body]); 2], node, ..overlap };
+            found.entry(overlap.of.map(number)).or_insert(own);
+        }
+    }
+    let pairs = found.keys().filter(|of| of[1] < scene.bodies.len()).count();
+    let of_bodies = found.iter().find(|(of, _)| of[1] < scene.bodies.len());
+    if let Some((&[first, second], overlap)) = of_bodies {
+        let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
+        let more = match pairs - 1 {
+            0 => String::new(),
+            1 => ", and so does another pair".to_owned(),
+            pairs => format!(", and so do {} other pairs", count(pairs as u128)),
+        };
+        let Overlap { node, depth, of: [own, _] } = *overlap;
+        let of_node = match own {
+            Side::Body(body) if first != second => format!(" of {}", quoted(&scene.bodies[body].name)),
+            _ => String::new(),
+        };
+        let reach = quantity(depth, "m");
+        let what = match depth {
+            _ if first == second => format!("{} reaches {reach} into itself", scene.bodies[first].in_words()),
+            0.0 => format!("{one} and {other} touch"),
+            _ => format!("{one} and {other} reach {reach} into each other"),
+        };
+        let message = format!("{what} at the start, at node {node}{of_node}{more}: contact cannot part them");
+        let help = "move one of them, with `offset` or `lowest`, or write contact.separate = true";
+        report.at(&typed.place(second), message, help);
+    }
+    for (&[body, obstacle], overlap) in found.iter().filter(|(of, _)| of[1] >= scene.bodies.len()) {
+        let number = obstacle - scene.bodies.len();
+        let (of, shape) = (scene.bodies[body].in_words(), &scene.obstacles[number].shape);
+        let (name, node) = (shape_name(shape), overlap.node);
+        let reach = quantity(overlap.depth, "m");
+        let message = match shape {
+            Shape::Floor { .. } | Shape::Plate { .. } => {
+                format!("{of} starts inside this {name}: node {node} lies {reach} below its surface")
+            }
+            _ if overlap.depth == 0.0 => format!("{of} touches this {name} at the start, at node {node}"),
+            _ => format!("{of} reaches {reach} into this {name} at the start, at node {node}"),
+        };
+        let help = match shape {
+            Shape::Floor { .. } => {
+                "move the floor, set the body on it with its `lowest` or `offset`, or write contact.separate = true"
+            }
+            _ => "move one of them, or write contact.separate = true; a path can move the obstacle there later",
+        };
+        report.at(&key_path!["obstacle", number], message, help);
+    }
 }

@@ -6,7 +6,7 @@ use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{count, ends, quoted, short};
 use crate::scene::mesh::longest;
 use crate::scene::{Run, Scene, SceneBody};
-use crate::sim::geometry::overlaps;
+use crate::sim::{Contacts, Overlap, Side, Surfaces};
 use std::collections::BTreeSet;
 
 /// Warns of all that is probably not meant.
@@ -15,8 +15,9 @@ pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>)
     warn_of_unused(scene, typed, report);
     warn_of_time(scene, report);
     warn_of_steps(scene, report);
-    if scene.contacts.is_none() {
-        warn_of_overlaps(scene, typed, report);
+    match &scene.contacts {
+        Some(contacts) => super::contact::warn_of_ways(scene, contacts, report),
+        None => warn_of_overlaps(scene, typed, report),
     }
     super::contact::warn_of_breaking(scene, report);
     warn_of_braked_rotation(scene, report);
@@ -126,8 +127,13 @@ fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>
     let mut known: BTreeSet<&[usize]> = BTreeSet::new();
     let simulated = scene.runs.iter().filter(|run| run.recording.is_none());
     for run in simulated.filter(|run| known.insert(run.of.as_slice())) {
-        let pairs = overlaps(&run.bodies, &run.initial.position, |_| true);
-        found.extend(pairs.map(|pair| pair.map(|body| run.of[body])));
+        let surfaces = Surfaces::new(run.bodies.bodies(), &[], &Contacts::default());
+        let deep =
+            surfaces.overlaps(&run.initial.position, 0.0, |_| true).into_iter().filter(|found| found.depth > 0.0);
+        found.extend(deep.filter_map(|Overlap { of, .. }| match of {
+            [Side::Body(one), Side::Body(other)] => Some([run.of[one], run.of[other]]),
+            _ => None,
+        }));
     }
     let Some(&[first, second]) = found.first() else { return };
     let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));

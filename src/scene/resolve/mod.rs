@@ -118,8 +118,8 @@ impl<'a> Typed<'a> {
         };
         scene.place_runs();
         Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
-        if scene.contacts.is_some() {
-            contact::check_starts(&scene, self, report);
+        if let Some(contacts) = &scene.contacts {
+            contact::check_starts(&scene, contacts, self, report);
         }
         doubts::warn(&scene, self, report);
         Some(Scene { warnings: report.warnings(), ..scene })
@@ -156,6 +156,9 @@ impl<'a> Typed<'a> {
         let bodies: Option<Vec<_>> = bodies.into_iter().collect();
         let mut bodies = bodies.filter(|bodies| bodies.iter().all(|body| Some(body.body.dimension()) == dimension));
         let contacts = bodies.as_ref().and_then(|bodies| contact::resolve(self, bodies, report));
+        if let (Some(bodies), Some(obstacles), Some(contacts)) = (&mut bodies, &obstacles, &contacts) {
+            contact::separate(self, bodies, obstacles, contacts, &choices);
+        }
         let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&file.hold, &file.grab, bodies, report));
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);

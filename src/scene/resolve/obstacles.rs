@@ -1,6 +1,5 @@
 //! Obstacles.
 
-use super::contact::CLEARANCE;
 use super::motion::{self, axis};
 use super::{direction, vector};
 use crate::reading::captions::{quantity, rounded};
@@ -25,7 +24,8 @@ pub(super) fn resolve(
         let Some(typed) = obstacle else { continue };
         let path = key_path!["obstacle", at];
         let Some(obstacle) = one(typed, dimension, &path, report) else { continue };
-        bodies.iter().for_each(|body| check_start(&obstacle, body, is_by_nodes, &path, report));
+        // Where surfaces meet, they are compared once all bodies of a run are known.
+        bodies.iter().filter(|_| is_by_nodes).for_each(|body| check_start(&obstacle, body, &path, report));
         obstacles.push(obstacle);
     }
     (obstacles.len() == typed.len()).then_some(obstacles)
@@ -110,29 +110,20 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[PathPart<'_>], report:
 /// The depth that rounding may leave a node in an obstacle at the start, in body sizes.
 const TOUCHING: f64 = 1e-9;
 
-/// Reports obstacles that contain nodes at the start, and obstacles that start inside the body. Where surfaces meet, a body must not
-/// even touch a box: contact keeps them apart, but cannot part them.
-fn check_start(
-    obstacle: &Obstacle,
-    body: &SceneBody,
-    is_by_nodes: bool,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) {
-    let mut obstacle = obstacle.clone();
-    let mut clearance = 0.0;
-    if let (false, Shape::Box { half, .. }) = (is_by_nodes, &mut obstacle.shape) {
-        clearance = CLEARANCE * body.side;
-        *half += clearance;
-    }
-    let (placed, of) = (obstacle.at(0.0, 1.0), body.in_words());
-    let name = match obstacle.shape {
+/// An obstacle in messages.
+pub(super) fn shape_name(shape: &Shape) -> &'static str {
+    match shape {
         Shape::Floor { .. } => "floor",
         Shape::Plate { .. } => "plate",
         Shape::Sphere { .. } => "sphere",
         Shape::Capsule { .. } => "capsule",
         Shape::Box { .. } => "box",
-    };
+    }
+}
+
+/// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
+fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    let (placed, of, name) = (obstacle.at(0.0, 1.0), body.in_words(), shape_name(&obstacle.shape));
     let depths = (0..).zip(&body.initial.position).filter_map(|(node, &at): (usize, _)| {
         let (contact, _) = placed.contact(at)?;
         (contact.depth > TOUCHING * body.body.extent()).then_some((node, contact.depth))
@@ -142,20 +133,13 @@ fn check_start(
         _ => Some(this),
     });
     if let Some((node, depth)) = deepest {
-        let touches = depth <= clearance + TOUCHING * body.body.extent() && clearance > 0.0;
-        let message = match touches {
-            true => format!("{of} touches this {name} at the start, with node {node}: contact cannot part them"),
-            false => {
-                let below = quantity(depth - clearance, "m");
-                format!("{of} starts inside this {name}: node {node} lies {below} below its surface")
-            }
-        };
+        let below = quantity(depth, "m");
+        let message = format!("{of} starts inside this {name}: node {node} lies {below} below its surface");
         let help = match obstacle.shape {
-            _ if touches => &format!("leave at least {} between them", quantity(2.0 * clearance, "m")),
             Shape::Floor { .. } => "move the floor, or set the body on it with its `lowest` or `offset`",
             _ => "move one of them; a path can move the obstacle there later",
         };
-        return report.at(path, message, help.to_owned());
+        return report.at(path, message, help);
     }
     let (pose, pivot) = (obstacle.pose(0.0), obstacle.pivot);
     let (low, high) = bounds(&body.initial.position);

@@ -7,6 +7,7 @@ use crate::scene::SceneBody;
 use crate::scene::file::BodyFile;
 use crate::scene::generate::Generator;
 use crate::sim::{Body, BodyError, Solids, State};
+use glam::DVec3;
 use localshape_mesh::{Filled, Group};
 use std::sync::Arc;
 
@@ -48,6 +49,7 @@ impl BodyTable<'_> {
             side: side.unwrap_or_else(|| elements::mean_edge(&body)),
             body: Arc::new(body),
             initial,
+            separated: DVec3::ZERO,
             has_cells: false,
             springs: None,
             groups: Vec::new(),

@@ -59,6 +59,9 @@ pub struct BodySummary {
     pub extent: Vec<f64>,
     /// Lowest and highest corner of the box around the body as it starts (m).
     pub start: [Vec<f64>; 2],
+    /// The way (m) by which it was moved apart from what it overlapped. Absent if it was not moved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub separated: Option<Vec<f64>>,
     /// Its mass (kg).
     pub mass: f64,
     /// Number of triangles of the fine surface that it carries.
@@ -112,7 +115,7 @@ pub struct PartSummary {
 }
 
 impl BodySummary {
-    fn new(SceneBody { name, body, initial, .. }: &SceneBody) -> Self {
+    fn new(SceneBody { name, body, initial, separated, .. }: &SceneBody) -> Self {
         let (low, high) = bounds(body.rest());
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         Self {
@@ -122,6 +125,7 @@ impl BodySummary {
             elements: captions::elements(body).into_iter().map(of_kind).collect(),
             extent: coordinates(high - low, body.dimension()),
             start: corners(&initial.position, body.dimension()),
+            separated: (*separated != DVec3::ZERO).then(|| coordinates(*separated, body.dimension())),
             mass: body.mass().iter().sum(),
             carried: body.carried().map(|carried| carried.triangles.len()),
         }

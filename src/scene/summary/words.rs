@@ -169,6 +169,9 @@ impl fmt::Display for SceneSummary {
             let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
             let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
             line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
+            if let Some(way) = &body.separated {
+                line("", &format!("moved by {} m, apart from what it overlapped", vector(way)))?;
+            }
         }
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
