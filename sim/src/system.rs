@@ -10,6 +10,7 @@ use super::part::Part;
 use super::state::{Divergence, Memory, Nodes, Runaway, State};
 use super::surroundings::Surroundings;
 use glam::DVec3;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// All parts and their surroundings.
@@ -33,6 +34,12 @@ impl System {
             self.surroundings.contacts.is_none() || matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. })
         };
         self.surroundings.obstacles.iter().filter(is_met).collect()
+    }
+
+    /// The nodes of bodies that meet half-spaces with their carried surface: they meet no obstacle.
+    pub(super) fn apart(&self) -> Vec<Range<usize>> {
+        let is_apart = |part: &&Part| self.surroundings.contacts.is_some() && part.body.meets_by_surface();
+        self.parts.iter().filter(is_apart).map(|part| part.nodes.clone()).collect()
     }
 
     /// Makes contact of surfaces anew, as the surroundings say.
@@ -164,8 +171,13 @@ impl System {
         timing: Timing,
     ) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
-        for obstacle in self.met_by_nodes() {
-            obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
+        let (met, apart) = (self.met_by_nodes(), self.apart());
+        for nodes in self.parts.iter().map(|part| part.nodes.clone()).filter(|nodes| !apart.contains(nodes)) {
+            let acceleration = acceleration.map(|all| &all[nodes.clone()]);
+            for obstacle in &met {
+                let (position, velocity) = (&mut position[nodes.clone()], &mut velocity[nodes.clone()]);
+                obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
+            }
         }
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);

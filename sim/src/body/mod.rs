@@ -48,6 +48,11 @@ impl Body {
         NewBody::new(rest)
     }
 
+    /// Whether it meets half-spaces with the points of a carried surface, where surfaces meet. Other bodies meet them with their nodes.
+    pub(crate) fn meets_by_surface(&self) -> bool {
+        self.carried.is_some() && self.dimension == Dimension::Space
+    }
+
     /// Whether it is in the plane or in space.
     pub fn dimension(&self) -> Dimension {
         self.dimension

@@ -10,6 +10,7 @@ mod closest;
 mod cross;
 mod extent;
 mod features;
+mod ground;
 mod inside;
 mod obstacle;
 mod overlap;

@@ -3,6 +3,7 @@
 use super::cross::crossings;
 use super::extent::Extent;
 use super::features::Placed;
+use super::ground::Grounds;
 use super::pair::{Pair, Places, Seen};
 use super::rule::{Law, Moved, Timing};
 use super::shown::Shown;
@@ -29,6 +30,7 @@ pub(crate) struct Stage {
     /// The nodes of the surfaces of bodies, each once.
     nodes: Vec<u32>,
     known: Mutex<Known>,
+    grounds: Mutex<Grounds>,
 }
 
 /// An obstacle with an extent, and its points at the start (m).
@@ -79,7 +81,7 @@ impl Way {
 
 impl Clone for Stage {
     fn clone(&self) -> Self {
-        let Self { contacts, surfaces, bodies, obstacles, rest, inverse_mass, nodes, .. } = self;
+        let Self { contacts, surfaces, bodies, obstacles, rest, inverse_mass, nodes, grounds, .. } = self;
         Self {
             contacts: contacts.clone(),
             surfaces: surfaces.clone(),
@@ -89,6 +91,7 @@ impl Clone for Stage {
             inverse_mass: inverse_mass.clone(),
             nodes: nodes.clone(),
             known: Mutex::default(),
+            grounds: Mutex::new(grounds.lock().unwrap_or_else(PoisonError::into_inner).clone()),
         }
     }
 }
@@ -108,18 +111,14 @@ pub(crate) struct End<'a> {
 impl Stage {
     /// The surfaces of bodies and obstacles; `None` if no two of them can meet.
     pub(crate) fn new(contacts: &Contacts, parts: &[Part], obstacles: &[Obstacle]) -> Option<Self> {
-        /// The distance that two bodies of equal cells keep, as a share of a cell.
-        const GAP: f64 = 0.05;
         let dimension = parts.first()?.body.dimension;
         let rest: Vec<DVec3> = parts.iter().flat_map(|part| part.body.rest.iter().copied()).collect();
         let inverse_mass = parts.iter().flat_map(|part| part.body.mass.iter().map(|mass| mass.recip())).collect();
-        let places = Places { nodes: &rest, obstacles: &[] };
         let mut surfaces = Vec::new();
         for part in parts {
             let mut surface = Surface::of(&part.body, part.nodes.start as u32);
-            let cell = surface.cell(|point| places.point(&surface.points, point));
             let own = contacts.bodies.get(part.number).and_then(|body| body.thickness);
-            surface.thickness = own.unwrap_or(0.5 * GAP * cell);
+            surface.thickness = own.unwrap_or(surface.thickness);
             surfaces.push(surface);
         }
         let bodies = surfaces.len();
@@ -133,6 +132,8 @@ impl Stage {
             surfaces.push(surface);
             solids.push(Solid { number, obstacle: obstacle.clone(), points });
         }
+        let grounds = Grounds::new(parts, &surfaces, obstacles);
+        let has_grounds = !grounds.is_empty();
         let meets_itself = contacts.bodies.iter().any(|body| body.itself);
         let stage = Self {
             contacts: contacts.clone(),
@@ -143,8 +144,9 @@ impl Stage {
             inverse_mass,
             nodes,
             known: Mutex::default(),
+            grounds: Mutex::new(grounds),
         };
-        (meets_itself || stage.surfaces.len() > 1).then_some(stage)
+        (has_grounds || meets_itself || stage.surfaces.len() > 1).then_some(stage)
     }
 
     /// How two surfaces meet; `None` if they do not.
@@ -185,13 +187,25 @@ impl Stage {
     }
 
     /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, which stay as they are.
-    pub(crate) fn resolve(&self, end: End<'_>, held: impl Iterator<Item = usize>, crew: &Crew) {
-        let End { interval, before, position, velocity, timing, changed } = end;
+    pub(crate) fn resolve(&self, mut end: End<'_>, held: impl Iterator<Item = usize>, crew: &Crew) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = &mut *known;
+        let (known, interval) = (&mut *known, end.interval);
         self.place_obstacles(interval, &mut known.obstacles);
         known.inverse_mass.clone_from(&self.inverse_mass);
         held.for_each(|node| known.inverse_mass[node] = 0.0);
+        known.is_changed.clear();
+        known.is_changed.resize(end.position.len(), false);
+        known.slowed.resize(end.position.len(), DVec3::ZERO);
+        let slow = |slowed: &mut [DVec3], nodes: &[u32], end: &End<'_>| {
+            for node in nodes.iter().map(|&node| node as usize) {
+                slowed[node] = end.before.velocity[node] - end.velocity[node];
+            }
+        };
+        slow(&mut known.slowed, &self.nodes, &end);
+        let mut grounds = self.grounds.lock().unwrap_or_else(PoisonError::into_inner);
+        grounds.resolve(&self.surfaces, &mut end, &known.inverse_mass, &known.slowed, &mut known.is_changed);
+        slow(&mut known.slowed, end.changed, &end);
+        let End { before, position, velocity, timing, changed, .. } = end;
         let [start, moved, speed] = &known.obstacles;
         let start = Places { nodes: before.position, obstacles: start };
         let ended = Places { nodes: position, obstacles: moved };
@@ -225,10 +239,6 @@ impl Stage {
         for surface in known.pairs.iter().flat_map(|pair| pair.of) {
             known.shown[surface].place(&self.surfaces[surface], &start);
         }
-        known.slowed.resize(position.len(), DVec3::ZERO);
-        for node in self.nodes.iter().map(|&node| node as usize) {
-            known.slowed[node] = before.velocity[node] - velocity[node];
-        }
         let seen = Seen {
             surfaces: &self.surfaces,
             rest: Places { nodes: &self.rest, obstacles: &[] },
@@ -242,8 +252,6 @@ impl Stage {
             pair.go(&seen, relative(since, pair.of), ahead);
             pair.look(&seen, ahead);
         });
-        known.is_changed.clear();
-        known.is_changed.resize(position.len(), false);
         let obstacles = [&moved[..], &speed[..]];
         let (inverse_mass, is_changed) = (&known.inverse_mass[..], &mut known.is_changed[..]);
         let (step, slowed) = (interval.step, &known.slowed[..]);
@@ -373,7 +381,8 @@ impl Stage {
         let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN);
         let mut order: Vec<usize> = (0..extents.len()).collect();
         order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
-        let mut speed = f64::INFINITY;
+        let clear = self.grounds.lock().unwrap_or_else(PoisonError::into_inner).clear(&self.surfaces, at.position)?;
+        let mut speed = bearable(clear, 0.0);
         for (at, &one) in order.iter().enumerate() {
             for &other in &order[at + 1..] {
                 // No later one is nearer.

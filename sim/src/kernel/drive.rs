@@ -66,7 +66,7 @@ impl Dynamics for ByKernel {
             state.memory.constraints.clone()
         });
         let Surroundings { gravity, grips, forces, loads, .. } = &system.surroundings;
-        let obstacles = &system.met_by_nodes()[..];
+        let (obstacles, apart) = (&system.met_by_nodes()[..], &system.apart()[..]);
         let spans: Vec<_> = grips.iter().map(Grip::span).collect();
         let is_still = obstacles.iter().all(|obstacle| obstacle.is_still());
         let target = rollback.steps() + count;
@@ -133,6 +133,7 @@ impl Dynamics for ByKernel {
                     }
                 },
                 floor: met.floor(),
+                apart,
                 grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
                 held: &[],
                 meeting: system.contact.as_ref().map(|stage| Meeting { meet: &meet, alone: &alone, nodes: stage.nodes() }),

@@ -162,6 +162,8 @@ pub(crate) struct Around<'a> {
     /// The only obstacle, if it is a floor that does not move. For nodes that moved at constant velocity the kernel
     /// then computes contact in lanes, with the same bits as `resolve`.
     pub(crate) floor: Option<Floor>,
+    /// The nodes of parts that meet no obstacle.
+    pub(crate) apart: &'a [Range<usize>],
     /// The nodes that grips hold, if any grip is active.
     pub(crate) grips: Option<Held<'a>>,
     /// Whether each node of the part is one of them, which has no speed of its own; empty if none is.

@@ -184,6 +184,8 @@ impl PartStepper {
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let Self { stepper, nodes, .. } = self;
         let around = &Around { forces: around.forces.get(nodes.clone()).unwrap_or_default(), ..*around };
+        let free = Around { bounds: &[], row: &|_| 0..0, floor: None, ..*around };
+        let around = if around.apart.contains(nodes) { &free } else { around };
         let lost = match around.grips.filter(|grips| (grips.hold)(nodes)) {
             None => stepper.run(passes, some, around, crew),
             Some(grips) => {

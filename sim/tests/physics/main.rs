@@ -16,6 +16,7 @@ mod figures;
 #[cfg(feature = "scene")]
 mod fill;
 mod grips;
+mod grounds;
 #[cfg(feature = "scene")]
 mod implicit;
 mod integrators;

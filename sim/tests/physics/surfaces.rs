@@ -12,10 +12,10 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The side of a cell (m).
-const SIDE: f64 = 0.1;
+pub(super) const SIDE: f64 = 0.1;
 
 /// A block of cubes of 1 kg, around the origin.
-fn block(cells: [u32; 3]) -> Arc<Body> {
+pub(super) fn block(cells: [u32; 3]) -> Arc<Body> {
     let nodes = cells.map(|cells| cells + 1);
     let number = |at: [u32; 3]| at[0] + nodes[0] * (at[1] + nodes[1] * at[2]);
     let grid =
@@ -35,10 +35,10 @@ fn block(cells: [u32; 3]) -> Arc<Body> {
 
 /// Where a body is, how it is turned, and how it moves.
 #[derive(Clone, Copy)]
-struct Placed {
-    at: DVec3,
-    turned: DQuat,
-    speed: DVec3,
+pub(super) struct Placed {
+    pub(super) at: DVec3,
+    pub(super) turned: DQuat,
+    pub(super) speed: DVec3,
 }
 
 /// Numbers from −1 to 1 that look random.
@@ -62,7 +62,7 @@ fn together(bodies: &[(Arc<Body>, Placed)], stiffness: f64, share: f64, around: 
 }
 
 /// The same by any integrator and code. Rotations are exact, so that forces within elements have no torque.
-fn by(
+pub(super) fn by(
     integrator: Integrator,
     kernel: Kernel,
     bodies: &[(Arc<Body>, Placed)],

@@ -166,6 +166,7 @@ pub(super) const FREE: Around<'_> = Around {
     row: &|_| 0..0,
     resolve: &|_, _, _, _| {},
     floor: None,
+    apart: &[],
     grips: None,
     held: &[],
     meeting: None,

@@ -1,0 +1,187 @@
+//! Bodies that carry a surface meet half-spaces with its points, by the rule of surfaces.
+//!
+//! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
+
+use super::Obstacle;
+use super::rule::{Law, Moved, Term, Touch};
+use super::stage::End;
+use super::surface::Surface;
+use crate::part::Part;
+use glam::DVec3;
+
+/// A body and a half-space.
+#[derive(Clone, Debug)]
+pub(super) struct Ground {
+    /// The number of the body.
+    body: usize,
+    obstacle: Obstacle,
+    law: Law,
+    /// How much farther a point moves at most than the nodes that it follows: the greatest sum of magnitudes of weights.
+    lever: f64,
+    /// What is known of its points. It only saves work.
+    known: Near,
+}
+
+/// Points that were near a plane, with the heights of all nodes of the surface then (m); without heights nothing
+/// is known.
+#[derive(Clone, Debug, Default)]
+struct Near {
+    points: Vec<u32>,
+    heights: Vec<f64>,
+    /// How far points may move towards the plane (m) until others may touch it.
+    skin: f64,
+}
+
+/// A plane: all points with `normal · x = height`.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: DVec3,
+    height: f64,
+}
+
+impl Plane {
+    fn above(self, point: DVec3) -> f64 {
+        self.normal.dot(point) - self.height
+    }
+}
+
+impl Ground {
+    /// A body, which has a carried surface, and an obstacle; `None` if that is not a half-space.
+    pub(super) fn new(body: usize, surface: &Surface, obstacle: &Obstacle) -> Option<Self> {
+        obstacle.half_space(0.0)?;
+        let points = 0..surface.points.len();
+        let sums = points.map(|point| surface.points.of(point).1.iter().map(|weight| weight.abs()).sum::<f64>());
+        let &Obstacle { restitution, friction, .. } = obstacle;
+        let law = Law { gap: surface.thickness, restitution, friction };
+        Some(Self { body, obstacle: obstacle.clone(), law, lever: sums.fold(1.0, f64::max), known: Near::default() })
+    }
+
+    fn plane(&self, time: f64) -> Plane {
+        let (normal, height) = self.obstacle.half_space(time).unwrap_or((DVec3::Y, f64::NEG_INFINITY));
+        Plane { normal, height }
+    }
+
+    /// The way (m) for which the body surely touches nothing; `None` if that is not known, as beside planes that move.
+    pub(super) fn clear(&self, surfaces: &[Surface], position: &[DVec3]) -> Option<f64> {
+        /// Round-off of sums of weights.
+        const ROUND: f64 = 1e-9;
+        if !self.obstacle.is_still() || self.lever > 1.0 + ROUND {
+            return None;
+        }
+        let plane = self.plane(0.0);
+        let heights = surfaces[self.body].nodes.iter().map(|&node| plane.above(position[node as usize]));
+        Some(heights.fold(f64::INFINITY, f64::min) - self.law.gap)
+    }
+
+    /// Lists the points that may touch the plane in a step, in order.
+    fn list(&mut self, surface: &Surface, end: &End<'_>, plane: Plane) {
+        /// A share of the thickness, and of the way of a step.
+        const SKIN: [f64; 2] = [20.0, 16.0];
+        let Self { known: Near { points, heights, skin }, lever, law, obstacle, .. } = self;
+        let height = |position: &[DVec3], node: u32| plane.above(position[node as usize]);
+        let (start, nodes) = (end.before.position, &surface.nodes);
+        let far = |way: f64, now: f64, other: f64| way.max((now - other).abs());
+        let ahead = nodes.iter().fold(0.0, |way, &node| far(way, height(start, node), height(end.position, node)));
+        let since = nodes.iter().zip(&*heights).fold(0.0, |way, (&node, &then)| far(way, height(start, node), then));
+        if obstacle.is_still() && !heights.is_empty() && *lever * (since + ahead) <= *skin {
+            return;
+        }
+        *skin = (SKIN[0] * surface.thickness).max(SKIN[1] * *lever * ahead);
+        let reach = if obstacle.is_still() { law.gap + *skin } else { f64::INFINITY };
+        let is_near = |&point: &u32| plane.above(surface.points.place(point as usize, start)) <= reach;
+        points.clear();
+        points.extend((0..surface.points.len() as u32).filter(is_near));
+        heights.clear();
+        heights.extend(nodes.iter().map(|&node| height(start, node)));
+    }
+
+    /// Adds the points that come nearer to the plane than the distance that is kept.
+    fn look(&mut self, surfaces: &[Surface], end: &End<'_>, touches: &mut Touches) {
+        let surface = &surfaces[self.body];
+        let plane = self.plane(end.interval.begin);
+        let [from, to] = [end.interval.begin, end.interval.end].map(|time| self.obstacle.pose(time));
+        self.list(surface, end, plane);
+        for &point in &self.known.points {
+            let (nodes, weights) = surface.points.of(point as usize);
+            let here = surface.points.place(point as usize, end.before.position);
+            let distance = plane.above(here);
+            let foot = here - plane.normal * distance;
+            let moved = to.apply(self.obstacle.pivot, from.undo(self.obstacle.pivot, foot));
+            let there = surface.points.place(point as usize, end.position);
+            // Impulses at other points may press it down.
+            let reserve = plane.normal.dot(there - here).abs();
+            if plane.normal.dot(there - moved) >= self.law.gap + reserve {
+                continue;
+            }
+            let first = touches.terms.len() as u32;
+            let own = nodes.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+            touches.terms.extend(own.map(|(&node, &weight)| Term { node, weight }));
+            let node = (end.position.len() + touches.feet[0].len()) as u32;
+            touches.terms.push(Term { node, weight: -1.0 });
+            touches.feet[0].push(moved);
+            touches.feet[1].push((moved - foot) / end.interval.step);
+            let terms = [first, touches.terms.len() as u32];
+            touches.all.push((self.law, Touch { normal: plane.normal, distance, drag: DVec3::ZERO, terms }));
+        }
+    }
+}
+
+/// All bodies with half-spaces that they may meet, and what touches in a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grounds {
+    all: Vec<Ground>,
+    touches: Touches,
+}
+
+/// What touches half-spaces in a step.
+#[derive(Clone, Debug, Default)]
+struct Touches {
+    all: Vec<(Law, Touch)>,
+    terms: Vec<Term>,
+    /// The feet of the points at the end of the step (m), and their velocities (m/s).
+    feet: [Vec<DVec3>; 2],
+}
+
+impl Grounds {
+    /// The half-spaces that bodies with a carried surface meet.
+    pub(super) fn new(parts: &[Part], surfaces: &[Surface], obstacles: &[Obstacle]) -> Self {
+        let carried = parts.iter().zip(surfaces).enumerate().filter(|(_, (part, _))| part.body.meets_by_surface());
+        let all = carried.flat_map(|(body, (_, surface))| {
+            obstacles.iter().filter_map(move |obstacle| Ground::new(body, surface, obstacle))
+        });
+        Self { all: all.collect(), touches: Touches::default() }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// The way (m) for which surely nothing touches; `None` if that is not known.
+    pub(super) fn clear(&self, surfaces: &[Surface], position: &[DVec3]) -> Option<f64> {
+        self.all.iter().try_fold(f64::INFINITY, |least, ground| Some(least.min(ground.clear(surfaces, position)?)))
+    }
+
+    /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points.
+    pub(super) fn resolve(
+        &mut self,
+        surfaces: &[Surface],
+        end: &mut End<'_>,
+        inverse_mass: &[f64],
+        slowed: &[DVec3],
+        is_changed: &mut [bool],
+    ) {
+        let Self { all, touches } = self;
+        touches.all.clear();
+        touches.terms.clear();
+        touches.feet.iter_mut().for_each(Vec::clear);
+        all.iter_mut().for_each(|ground| ground.look(surfaces, end, touches));
+        let [feet, speed] = &touches.feet;
+        let End { interval, position, velocity, timing, changed, .. } = end;
+        let (obstacles, step, timing) = ([&feet[..], &speed[..]], interval.step, *timing);
+        let mut nodes = Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
+        for (law, touch) in &touches.all {
+            let [first, last] = touch.terms.map(|at| at as usize);
+            nodes.resolve(*law, touch, &touches.terms[first..last]);
+        }
+    }
+}
