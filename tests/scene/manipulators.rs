@@ -187,14 +187,14 @@ fn obstacles_that_start_inside_the_body() {
     let touching = "[[obstacle]]\nkind = 'sphere'\ncentre = [0, 0.1, 0]\nradius = 0.08";
     case(WORLD, touching, "1:1 the body reaches 80 mm into this sphere at the start, at node 1 move one");
     let hidden = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.05, 0.15, 0]\nradius = 0.01";
-    case(WORLD, hidden, " into this sphere at the start, at node");
+    case(WORLD, hidden, "1:1 the body reaches 60 mm into this sphere at the start, at node 1 move one");
     let hidden = "[[obstacle]]\nkind = 'box'\ncentre = [0.05, 0.15]\nsize = [0.01, 0.01]";
-    case(PLANE, hidden, " into this box at the start, at node");
+    case(PLANE, hidden, "1:1 the body reaches 45 mm into this box at the start, at node");
     let floor = "[[obstacle]]\nkind = 'floor'\nheight = 0.15";
     case(WORLD, floor, "1:1 the body starts inside this floor: node 0 lies 50 mm below its surface move the floor");
     // Straight through it, between all nodes.
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [0.05, 0.15, -1]\nto = [0.05, 0.15, 1]\nradius = 0.01";
-    case(WORLD, rod, " into this capsule at the start, at node");
+    case(WORLD, rod, "1:1 the body reaches 10 mm into this capsule at the start, at node");
     // A path that starts elsewhere is accepted, and so is contact with a floor.
     let away = "path.keys = [{ time = 0, shift = [0, 9, 0] }]";
     good(&format!("{WORLD}{touching}\n{away}"));
