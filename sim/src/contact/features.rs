@@ -97,7 +97,8 @@ fn point_facet(
             .fold(f64::INFINITY, f64::min)
     };
     let rest = |counts: bool, around: &[u32], on: &[usize]| {
-        let towards = if counts { closest::towards(way, there, around.iter().map(|&at| place(at))) } else { f64::INFINITY };
+        let towards =
+            if counts { closest::towards(way, there, around.iter().map(|&at| place(at))) } else { f64::INFINITY };
         if towards == 0.0 { 0.0 } else { (towards.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE) }
     };
     let rests = match nearest.on {

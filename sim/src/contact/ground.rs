@@ -178,7 +178,8 @@ impl Grounds {
         let [feet, speed] = &touches.feet;
         let End { interval, position, velocity, timing, changed, .. } = end;
         let (obstacles, step, timing) = ([&feet[..], &speed[..]], interval.step, *timing);
-        let mut nodes = Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
+        let mut nodes =
+            Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
         for (law, touch) in &touches.all {
             let [first, last] = touch.terms.map(|at| at as usize);
             nodes.resolve(*law, touch, &touches.terms[first..last]);

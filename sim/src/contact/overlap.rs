@@ -1,10 +1,10 @@
 //! Bodies and obstacles that overlap or touch: contact of surfaces keeps them apart, but cannot part them.
 
 use super::cross::{Corners, near_facets};
-use super::inside::inside;
-use super::pair::Places;
 use super::extent::Extent;
 use super::features::Placed;
+use super::inside::inside;
+use super::pair::Places;
 use super::shape::ROUND_OFF;
 use super::surface::Surface;
 use super::{Contacts, Obstacle, Side};

@@ -42,9 +42,8 @@ impl Shown {
             let place = |point: u32| points[point as usize];
             let bend = bend(surface.edges[edge].map(place), surface.wings[edge].iter().map(|&corner| place(corner)));
             let stays;
-            (is_flat[edge], stays) = bend.map_or((false, f64::INFINITY), |(sine, height)| {
-                (sine < BEND, (sine - BEND).abs() * height / LEVER)
-            });
+            (is_flat[edge], stays) = bend
+                .map_or((false, f64::INFINITY), |(sine, height)| (sine < BEND, (sine - BEND).abs() * height / LEVER));
             *wake = *way + stays;
         }
     }

@@ -255,7 +255,8 @@ impl Stage {
         let obstacles = [&moved[..], &speed[..]];
         let (inverse_mass, is_changed) = (&known.inverse_mass[..], &mut known.is_changed[..]);
         let (step, slowed) = (interval.step, &known.slowed[..]);
-        let mut nodes = Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
+        let mut nodes =
+            Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
         let points = known.pairs.iter().map(|pair| (pair, &pair.touches.of_points));
         let edges = known.pairs.iter().map(|pair| (pair, &pair.touches.of_edges));
         for (pair, touches) in points.chain(edges) {

@@ -136,7 +136,11 @@ impl Dynamics for ByKernel {
                 apart,
                 grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
                 held: &[],
-                meeting: system.contact.as_ref().map(|stage| Meeting { meet: &meet, alone: &alone, nodes: stage.nodes() }),
+                meeting: system.contact.as_ref().map(|stage| Meeting {
+                    meet: &meet,
+                    alone: &alone,
+                    nodes: stage.nodes(),
+                }),
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
             let outcome = rollback.advance(until, &around, &system.crew);
