@@ -72,11 +72,12 @@ fn sphere(body: &Body) -> Carried {
     carried
 }
 
-/// A scene with a block of cells along each edge, which falls on a floor, and more keys of the view.
+/// A scene with a block of cells along each edge, whose nodes fall on a floor, and more keys of the view.
 fn block(cells: u32, view: &str) -> Scene {
     parse(&format!(
         "gravity = [0, -9.8, 0]
         time = {{ duration = 1, step = 'T/50' }}
+        contact = {{ rule = 'nodes' }}
         [[body]]
         lattice = {{ cells = [{cells}, {cells}, {cells}], side = 0.1 }}
         lowest = 0.05
