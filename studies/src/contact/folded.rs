@@ -1,6 +1,6 @@
 //! A body that meets itself: the legs of a U fly at each other.
 
-use super::bodies::{Placed, SIDE, Setting, cubes, own_crossings};
+use super::bodies::{Placed, SIDE, Setting, cubes};
 use super::{Measured, Trial};
 use glam::{DQuat, DVec3};
 use localshape::sim::{Body, BodyContact, IndexLists};
@@ -57,7 +57,7 @@ fn closes(speed: f64, restitution: f64, most: Option<u64>) -> Measured {
     let mut worst = 0;
     for _ in 0..150 {
         world.advance(2);
-        worst = worst.max(own_crossings(&body, &world.state().position));
+        worst = worst.max(world.crossings());
     }
     let what = format!("a U that closes with {speed} m/s at each side, e = {restitution}: triangles that cross");
     match most {

@@ -1,6 +1,6 @@
 //! Two bodies that fly at each other: momentum, angular momentum, energy, and what is entangled at the end.
 
-use super::bodies::{MASS, Placed, SIDE, Setting, crossings, cubes};
+use super::bodies::{MASS, Placed, SIDE, Setting, cubes};
 use super::{Measured, Trial};
 use crate::random::Random;
 use glam::DVec3;
@@ -95,7 +95,7 @@ fn entangled(stiffness: f64, restitution: f64, impacts: u64) -> Vec<Measured> {
         let bodies = pair(100 + seed);
         let mut world = Setting::new(stiffness, [restitution, 0.0]).world(&bodies);
         world.advance(300);
-        world.status() != Status::Ok || crossings(&world, &bodies) > 0
+        world.status() != Status::Ok || world.crossings() > 0
     };
     let count = (1..=impacts).filter(is_entangled).count();
     let what = format!("entangled of {impacts} impacts, k/m = {stiffness:e}/s², e = {restitution}");

@@ -3,7 +3,7 @@
 //! The situations are those of K. Erleben, "Methodology for assessing mesh-based contact point methods", ACM Transactions on Graphics 37,
 //! 39 (2018), with bodies of our own.
 
-use super::bodies::{GRAVITY, MASS, Placed, SIDE, Setting, block, crossings, cubes, obstacle};
+use super::bodies::{GRAVITY, MASS, Placed, SIDE, Setting, block, cubes, obstacle};
 use super::{Measured, Trial};
 use crate::random::Random;
 use glam::{DQuat, DVec3};
@@ -91,7 +91,7 @@ fn falls(at: usize, starts: u64) -> Measured {
         let mut world = setting.world(&bodies);
         for _ in 0..60 {
             world.advance(setting.steps(1.0 / 60.0));
-            crossed += u64::from(world.status() != Status::Ok || crossings(&world, &bodies) > 0);
+            crossed += u64::from(world.status() != Status::Ok || world.crossings() > 0);
         }
     }
     let what = format!("{}: frames of {starts} falls in which triangles cross", NAMES[at]);
