@@ -12,6 +12,17 @@ use std::fmt;
 /// A value that is computed when it is first used.
 pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
 
+/// What is known of the contact of a body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Touching {
+    /// The mean force on it (N).
+    pub(super) force: Option<DVec3>,
+    /// Its torque about the origin (N m).
+    pub(super) torque: Option<DVec3>,
+    /// Its triangles that cross its own or those of obstacles, and those that cross those of other bodies.
+    pub(super) crossings: Option<[usize; 2]>,
+}
+
 /// The quantities of one body from which diagnostics are computed.
 pub(super) struct BodyFacts<'a> {
     /// Mass of each node (kg).
@@ -21,6 +32,7 @@ pub(super) struct BodyFacts<'a> {
     pub(super) global_rotations: f64,
     /// Elements or springs that are broken; NaN if none can be.
     pub(super) broken: f64,
+    pub(super) touching: Touching,
     /// Energy and residuals from the model.
     pub(super) report: Lazy<'a, Report>,
     /// Signed volume of each element (m³, in the plane m²).
@@ -125,7 +137,11 @@ impl<'a> Facts<'_, 'a> {
 
     /// The same for vectors.
     fn sum_of_vectors(self, of_node: impl Fn(f64, DVec3, DVec3) -> DVec3) -> DVec3 {
-        let of_bodies: Vec<DVec3> = self.bodies.iter().map(|body| body.sum(&of_node)).collect();
+        self.total_of_vectors(|body| body.sum(&of_node))
+    }
+
+    fn total_of_vectors(self, of_body: impl Fn(&BodyFacts<'a>) -> DVec3) -> DVec3 {
+        let of_bodies: Vec<DVec3> = self.bodies.iter().map(of_body).collect();
         DVec3::from_array([0, 1, 2].map(|axis| total(of_bodies.iter().map(|sum| sum[axis]))))
     }
 
@@ -137,6 +153,13 @@ impl<'a> Facts<'_, 'a> {
     /// The numbers of the bodies that have one, reduced to one; NaN if no body has any.
     fn reduced(self, of_body: impl Fn(&BodyFacts<'a>) -> f64, reduce: impl Fn(f64, f64) -> f64) -> f64 {
         self.bodies.iter().map(of_body).filter(|number| !number.is_nan()).reduce(reduce).unwrap_or(f64::NAN)
+    }
+
+    /// Pairs of triangles that cross; NaN if they are not counted.
+    fn crossings(self) -> f64 {
+        // Two of several bodies share a pair.
+        let share = if self.bodies.len() > 1 { 0.5 } else { 1.0 };
+        self.total(|body| body.touching.crossings.map_or(f64::NAN, |[own, shared]| own as f64 + share * shared as f64))
     }
 
     /// RMS distance of the nodes from the placements of their bodies (m).
@@ -210,7 +233,8 @@ macro_rules! diagnostics {
         $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $scope:ident = $value:expr;
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
-        /// body does not have is NaN: the elastic energy, `residual`, `global_rotations` and `broken` of some models, the volume ratio of a cloth.
+        /// body does not have is NaN: the elastic energy, `residual`, `global_rotations` and `broken` of some models, the volume ratio of a cloth,
+        /// and what is told of contact in a world that is not asked for it.
         /// Two that are both NaN are equal.
         #[derive(Clone, Copy, Debug, Default)]
         #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
@@ -337,9 +361,26 @@ diagnostics! { facts:
 
     /// Number of elements, or of springs, that are broken.
     Broken, broken: f64, "broken", "", Frames = facts.reduced(|body| body.broken, std::ops::Add::add);
+
+    /// Mean force of obstacles and other bodies where they touch (N), in the last interval between rows, or else frames; as one number, its
+    /// length.
+    ContactForce, contact_force: DVec3, "contact force", "N", Frames = facts.total_of_vectors(|body| body.touching.force.unwrap_or(DVec3::NAN));
+
+    /// Its torque about the origin (N m); as one number, its length.
+    ContactTorque, contact_torque: DVec3, "contact torque", "N m", Frames =
+        facts.total_of_vectors(|body| body.touching.torque.unwrap_or(DVec3::NAN));
+
+    /// Number of pairs of triangles, or of sides in the plane, of bodies and obstacles that cross each other where surfaces meet: 0 where all is
+    /// well.
+    Crossings, crossings: f64, "crossings", "", Frames = facts.crossings();
 }
 
 impl Diagnostic {
+    /// Whether it tells of forces of contact, and is NaN unless a world is [asked for them](super::World::keep_contact_forces).
+    pub fn is_of_contact(self) -> bool {
+        matches!(self, Self::ContactForce | Self::ContactTorque)
+    }
+
     /// Its value as one number; NaN where a model or a body has none.
     pub fn of(self, all: &Diagnostics) -> f64 {
         self.value(all).size()

@@ -40,6 +40,11 @@ pub(super) trait Dynamics: Send + Sync {
         None
     }
 
+    /// Whether states were computed elsewhere.
+    fn is_recorded(&self) -> bool {
+        false
+    }
+
     /// The number of steps taken. The state may be behind until [`Self::settle`] is called.
     fn steps(&self, state: &State) -> u64 {
         state.steps

@@ -55,6 +55,10 @@ impl Dynamics for ByRecording {
         Ok(())
     }
 
+    fn is_recorded(&self) -> bool {
+        true
+    }
+
     // States between moments are never looked at, and not read.
     fn settle(&mut self, state: &mut State) {
         if state.status == Status::Ok && self.shown != Some(state.steps) {

@@ -1,5 +1,6 @@
 //! A [`Snapshot`] of a run: the view of a simulation for drawing, diagnostics and files.
 
+use super::contact::ContactForce;
 use super::diagnostics::Diagnostics;
 use super::integrate::Unsolved;
 use super::placement::Placement;
@@ -34,6 +35,9 @@ pub struct Snapshot {
     pub diagnostics: Diagnostics,
     /// The same of each body.
     pub of_bodies: Vec<Diagnostics>,
+    /// The mean forces of contact in the last interval that has ended; empty before, and in a world that
+    /// [is not asked for them](super::World::keep_contact_forces).
+    pub contact_forces: Vec<ContactForce>,
     /// Whether the run has diverged.
     pub status: Status,
     /// The steps until then that an implicit method has not solved; `None` if there are none.

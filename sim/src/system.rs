@@ -1,6 +1,6 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
-use super::contact::{End, Obstacle, Shape, Stage, Timing};
+use super::contact::{End, Felt, Impulses, Obstacle, Shape, Side, Stage, Timing};
 use super::crew::Crew;
 use super::dynamics::SpeedLimit;
 use super::grip::Grip;
@@ -22,18 +22,40 @@ pub(super) struct System {
     pub(super) surroundings: Surroundings,
     /// Contact of surfaces, applied after grips; `None` if no two can meet.
     pub(super) contact: Option<Stage>,
+    /// Where impulses of contact are added up, if they are asked for.
+    pub(super) impulses: Option<Impulses>,
     /// Time step ΔT (s).
     pub(super) step: f64,
     pub(super) crew: Arc<Crew>,
 }
 
 impl System {
-    /// The obstacles that nodes meet: half-spaces alone where surfaces meet the others.
-    pub(super) fn met_by_nodes(&self) -> Vec<&Obstacle> {
-        let is_met = |obstacle: &&Obstacle| {
+    /// The obstacles that nodes meet, with their numbers: half-spaces alone where surfaces meet the others.
+    pub(super) fn met_by_nodes(&self) -> Vec<(usize, &Obstacle)> {
+        let is_met = |(_, obstacle): &(usize, &Obstacle)| {
             self.surroundings.contacts.is_none() || matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. })
         };
-        self.surroundings.obstacles.iter().filter(is_met).collect()
+        self.surroundings.obstacles.iter().enumerate().filter(is_met).collect()
+    }
+
+    /// Whether grips hold each node at the end of a step, if impulses are asked for; they feel none of obstacles.
+    pub(super) fn unfeeling(&self, interval: Interval, constraints: &[f64]) -> Vec<bool> {
+        let mut held = vec![false; self.impulses.as_ref().map_or(0, |_| self.mass.len())];
+        if !held.is_empty() {
+            let grips = self.grips(constraints).flat_map(|(grip, memory)| grip.moved(interval, memory));
+            grips.for_each(|(node, ..)| held[node] = true);
+        }
+        held
+    }
+
+    /// Adds what an obstacle does to a node in a step that ends at a time (s), with its positions (m) and velocities (m/s) before and after.
+    pub(super) fn feel(&self, time: f64, [obstacle, node]: [usize; 2], before: [DVec3; 2], after: [DVec3; 2]) {
+        if let Some(impulses) = self.impulses.as_ref().filter(|_| before != after) {
+            let (from, on) = (Side::Obstacle(obstacle), self.parts.partition_point(|part| part.nodes.end <= node));
+            let [before, after] = [before, after].map(|[at, speed]| [speed, at.cross(speed)]);
+            let changes = [0, 1].map(|of| (after[of] - before[of]) * self.mass[node]);
+            impulses.feel(Felt { time, node, from, on, changes });
+        }
     }
 
     /// The nodes of bodies that meet half-spaces with their carried surface: they meet no obstacle.
@@ -171,19 +193,27 @@ impl System {
         timing: Timing,
     ) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
-        let (met, apart) = (self.met_by_nodes(), self.apart());
+        let (met, apart, held) = (self.met_by_nodes(), self.apart(), self.unfeeling(interval, constraints));
         for nodes in self.parts.iter().map(|part| part.nodes.clone()).filter(|nodes| !apart.contains(nodes)) {
             let acceleration = acceleration.map(|all| &all[nodes.clone()]);
-            for obstacle in &met {
-                let (position, velocity) = (&mut position[nodes.clone()], &mut velocity[nodes.clone()]);
-                obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
+            for &(number, obstacle) in &met {
+                let (own, speeds) = (&mut position[nodes.clone()], &mut velocity[nodes.clone()]);
+                let before: Option<Vec<_>> =
+                    self.impulses.as_ref().map(|_| own.iter().copied().zip(speeds.iter().copied()).collect());
+                obstacle.at(interval.end, interval.step).rebound_all(own, speeds, acceleration);
+                for (node, (at, speed)) in
+                    nodes.clone().zip(before.into_iter().flatten()).filter(|&(node, _)| !held[node])
+                {
+                    self.feel(interval.end, [number, node], [at, speed], [position[node], velocity[node]]);
+                }
             }
         }
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);
         }
         let changed = &mut Vec::new();
-        self.meet(End { interval, before: before.nodes(), position, velocity, timing, changed }, constraints);
+        let impulses = self.impulses.as_ref();
+        self.meet(End { interval, before: before.nodes(), position, velocity, timing, changed, impulses }, constraints);
     }
 
     /// Lets surfaces meet at the end of a step. `constraints` is the memory of grips in the step.

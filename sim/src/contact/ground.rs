@@ -2,10 +2,10 @@
 //!
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
-use super::Obstacle;
 use super::rule::{Law, Moved, Term, Touch};
 use super::stage::End;
 use super::surface::Surface;
+use super::{Obstacle, Side};
 use crate::part::Part;
 use glam::DVec3;
 
@@ -14,6 +14,8 @@ use glam::DVec3;
 pub(super) struct Ground {
     /// The number of the body.
     body: usize,
+    /// The number of the obstacle.
+    number: usize,
     obstacle: Obstacle,
     law: Law,
     /// How much farther a point moves at most than the nodes that it follows: the greatest sum of magnitudes of weights.
@@ -47,13 +49,14 @@ impl Plane {
 
 impl Ground {
     /// A body, which has a carried surface, and an obstacle; `None` if that is not a half-space.
-    pub(super) fn new(body: usize, surface: &Surface, obstacle: &Obstacle) -> Option<Self> {
+    pub(super) fn new(body: usize, surface: &Surface, (number, obstacle): (usize, &Obstacle)) -> Option<Self> {
         obstacle.half_space(0.0)?;
         let points = 0..surface.points.len();
         let sums = points.map(|point| surface.points.of(point).1.iter().map(|weight| weight.abs()).sum::<f64>());
         let &Obstacle { restitution, friction, .. } = obstacle;
         let law = Law { gap: surface.thickness, restitution, friction };
-        Some(Self { body, obstacle: obstacle.clone(), law, lever: sums.fold(1.0, f64::max), known: Near::default() })
+        let (obstacle, lever) = (obstacle.clone(), sums.fold(1.0, f64::max));
+        Some(Self { body, number, obstacle, law, lever, known: Near::default() })
     }
 
     fn plane(&self, time: f64) -> Plane {
@@ -121,7 +124,11 @@ impl Ground {
             touches.feet[0].push(moved);
             touches.feet[1].push((moved - foot) / end.interval.step);
             let terms = [first, touches.terms.len() as u32];
-            touches.all.push((self.law, Touch { normal: plane.normal, distance, drag: DVec3::ZERO, terms }));
+            touches.all.push((
+                [self.number, self.body],
+                self.law,
+                Touch { normal: plane.normal, distance, drag: DVec3::ZERO, terms },
+            ));
         }
     }
 }
@@ -136,7 +143,8 @@ pub(super) struct Grounds {
 /// What touches half-spaces in a step.
 #[derive(Clone, Debug, Default)]
 struct Touches {
-    all: Vec<(Law, Touch)>,
+    /// With the numbers of the obstacle and of the body.
+    all: Vec<([usize; 2], Law, Touch)>,
     terms: Vec<Term>,
     /// The feet of the points at the end of the step (m), and their velocities (m/s).
     feet: [Vec<DVec3>; 2],
@@ -147,7 +155,7 @@ impl Grounds {
     pub(super) fn new(parts: &[Part], surfaces: &[Surface], obstacles: &[Obstacle]) -> Self {
         let carried = parts.iter().zip(surfaces).enumerate().filter(|(_, (part, _))| part.body.meets_by_surface());
         let all = carried.flat_map(|(body, (_, surface))| {
-            obstacles.iter().filter_map(move |obstacle| Ground::new(body, surface, obstacle))
+            obstacles.iter().enumerate().filter_map(move |obstacle| Ground::new(body, surface, obstacle))
         });
         Self { all: all.collect(), touches: Touches::default() }
     }
@@ -176,13 +184,21 @@ impl Grounds {
         touches.feet.iter_mut().for_each(Vec::clear);
         all.iter_mut().for_each(|ground| ground.look(surfaces, end, touches));
         let [feet, speed] = &touches.feet;
-        let End { interval, position, velocity, timing, changed, .. } = end;
+        let End { interval, position, velocity, timing, changed, impulses, .. } = end;
         let (obstacles, step, timing) = ([&feet[..], &speed[..]], interval.step, *timing);
+        let second = position.len() as u32;
         let mut nodes =
             Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
-        for (law, touch) in &touches.all {
+        for &([obstacle, body], law, ref touch) in &touches.all {
             let [first, last] = touch.terms.map(|at| at as usize);
-            nodes.resolve(*law, touch, &touches.terms[first..last]);
+            let terms = &touches.terms[first..last];
+            match impulses {
+                None => drop(nodes.resolve(law, touch, terms)),
+                Some(impulses) => {
+                    let told = nodes.resolve_and_tell(law, touch, terms, second);
+                    told.inspect(|&[on, _]| impulses.feel_surface(interval.end, Side::Obstacle(obstacle), body, on));
+                }
+            }
         }
     }
 }

@@ -11,6 +11,7 @@ mod cross;
 mod extent;
 mod features;
 mod ground;
+mod impulses;
 mod inside;
 mod obstacle;
 mod overlap;
@@ -26,6 +27,8 @@ mod surface;
 mod touches;
 
 pub(crate) use bound::{Bound, Floor};
+pub use impulses::ContactForce;
+pub(crate) use impulses::{Felt, Impulses};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
 pub use overlap::{Overlap, Surfaces};
@@ -75,6 +78,7 @@ pub struct PairContact {
 
 /// One side of a pair, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub enum Side {
     /// A body.
     Body(usize),

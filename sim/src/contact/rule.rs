@@ -92,6 +92,40 @@ impl Moved<'_> {
         self.inverse_mass.get(node as usize).copied().unwrap_or(0.0)
     }
 
+    /// Momentum (kg m/s) and angular momentum about the origin (kg m²/s) of the nodes of a pair that are free, on each of its sides: those
+    /// of the first surface are numbered before `second`.
+    fn momenta(&self, terms: &[Term], second: u32) -> [[DVec3; 2]; 2] {
+        let mut sums = [[DVec3::ZERO; 2]; 2];
+        for &Term { node, .. } in terms.iter().filter(|term| self.mobility(term.node) > 0.0) {
+            let momentum = self.speed(node) / self.mobility(node);
+            let [sum, turn] = &mut sums[usize::from(node >= second)];
+            *sum += momentum;
+            *turn += self.place(node).cross(momentum);
+        }
+        sums
+    }
+
+    /// As [`Self::resolve`]. Returns by how much the pair changes momentum (N s) and angular momentum about the origin (N m s) on each of its sides;
+    /// `None` if it changes nothing. A node that is held counts with its share of the impulse.
+    pub(super) fn resolve_and_tell(
+        &mut self,
+        law: Law,
+        touch: &Touch,
+        terms: &[Term],
+        second: u32,
+    ) -> Option<[[DVec3; 2]; 2]> {
+        let before = self.momenta(terms, second);
+        let impulse = self.resolve(law, touch, terms);
+        let after = self.momenta(terms, second);
+        let mut sums = [0, 1].map(|side| [0, 1].map(|at| after[side][at] - before[side][at]));
+        for &Term { node, weight } in terms.iter().filter(|term| self.mobility(term.node) == 0.0) {
+            let [sum, turn] = &mut sums[usize::from(node >= second)];
+            *sum += impulse * weight;
+            *turn += self.place(node).cross(impulse * weight);
+        }
+        (sums != [[DVec3::ZERO; 2]; 2]).then_some(sums)
+    }
+
     /// Notes that a node is changed.
     fn mark(&mut self, node: u32) {
         if !std::mem::replace(&mut self.is_changed[node as usize], true) {

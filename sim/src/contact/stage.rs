@@ -8,7 +8,7 @@ use super::pair::{Pair, Places, Seen};
 use super::rule::{Law, Moved, Timing};
 use super::shown::Shown;
 use super::surface::Surface;
-use super::{Contacts, Obstacle, Side};
+use super::{Contacts, Impulses, Obstacle, Side};
 use crate::crew::Crew;
 use crate::motion::Interval;
 use crate::part::Part;
@@ -106,6 +106,8 @@ pub(crate) struct End<'a> {
     pub(crate) timing: Timing,
     /// Takes the nodes that contact changes.
     pub(crate) changed: &'a mut Vec<u32>,
+    /// Where impulses are added up, if anywhere.
+    pub(crate) impulses: Option<&'a Impulses>,
 }
 
 impl Stage {
@@ -149,12 +151,15 @@ impl Stage {
         (has_grounds || meets_itself || stage.surfaces.len() > 1).then_some(stage)
     }
 
-    /// How two surfaces meet; `None` if they do not.
-    fn law(&self, one: usize, other: usize) -> Option<Law> {
-        let side = |surface: usize| match surface.checked_sub(self.bodies) {
+    fn side(&self, surface: usize) -> Side {
+        match surface.checked_sub(self.bodies) {
             None => Side::Body(surface),
             Some(solid) => Side::Obstacle(self.obstacles[solid].number),
-        };
+        }
+    }
+
+    /// How two surfaces meet; `None` if they do not.
+    fn law(&self, one: usize, other: usize) -> Option<Law> {
         if one >= self.bodies || one == other && !self.contacts.bodies.get(one).is_some_and(|body| body.itself) {
             return None;
         }
@@ -163,8 +168,8 @@ impl Stage {
         let gap = self.surfaces[one].thickness + self.surfaces[other].thickness;
         let usual = solid.map_or([*restitution, *friction], |solid| [solid.restitution, solid.friction]);
         let own = pairs.iter().find(|pair| {
-            let [a, b] = pair.of;
-            [a, b] == [side(one), side(other)] || [b, a] == [side(one), side(other)]
+            let ([a, b], sides) = (pair.of, [self.side(one), self.side(other)]);
+            [a, b] == sides || [b, a] == sides
         });
         let law = Law { gap, restitution: usual[0], friction: usual[1] };
         Some(own.map_or(law, |own| Law {
@@ -205,7 +210,7 @@ impl Stage {
         let mut grounds = self.grounds.lock().unwrap_or_else(PoisonError::into_inner);
         grounds.resolve(&self.surfaces, &mut end, &known.inverse_mass, &known.slowed, &mut known.is_changed);
         slow(&mut known.slowed, end.changed, &end);
-        let End { before, position, velocity, timing, changed, .. } = end;
+        let End { before, position, velocity, timing, changed, impulses, .. } = end;
         let [start, moved, speed] = &known.obstacles;
         let start = Places { nodes: before.position, obstacles: start };
         let ended = Places { nodes: position, obstacles: moved };
@@ -262,8 +267,31 @@ impl Stage {
         for (pair, touches) in points.chain(edges) {
             for touch in touches {
                 let [first, last] = touch.terms.map(|at| at as usize);
-                nodes.resolve(pair.law, touch, &pair.touches.terms[first..last]);
+                let terms = &pair.touches.terms[first..last];
+                match impulses {
+                    None => drop(nodes.resolve(pair.law, touch, terms)),
+                    Some(impulses) => {
+                        let told = nodes.resolve_and_tell(pair.law, touch, terms, self.first_node(pair.of[1]));
+                        told.inspect(|&told| self.tell(impulses, interval.end, pair.of, told));
+                    }
+                }
             }
+        }
+    }
+
+    /// The first node of a surface; of obstacles the number after those of nodes.
+    fn first_node(&self, surface: usize) -> u32 {
+        let nodes = self.surfaces.get(..self.bodies).and_then(|bodies| bodies.get(surface)).map(|body| &body.nodes);
+        nodes.and_then(|nodes| nodes.first().copied()).unwrap_or(self.rest.len() as u32)
+    }
+
+    /// Adds what the sides of a pair have got in a step that ends at a time (s). A body exerts nothing on itself.
+    fn tell(&self, impulses: &Impulses, time: f64, [one, other]: [usize; 2], [on_one, on_other]: [[DVec3; 2]; 2]) {
+        if one != other {
+            impulses.feel_surface(time, self.side(other), one, on_one);
+        }
+        if let (true, Side::Body(body)) = (one != other, self.side(other)) {
+            impulses.feel_surface(time, self.side(one), body, on_other);
         }
     }
 
@@ -338,8 +366,8 @@ impl Stage {
         margin
     }
 
-    /// The number of pairs of facets that cross at a time (s), of surfaces that meet; with positions of all nodes (m).
-    pub(crate) fn crossings(&self, position: &[DVec3], time: f64) -> usize {
+    /// The number of pairs of facets that cross at a time (s), of each two surfaces that meet, with positions of all nodes (m).
+    pub(crate) fn crossings(&self, position: &[DVec3], time: f64) -> Vec<([Side; 2], usize)> {
         let mut obstacles = [const { Vec::new() }; 3];
         self.place_obstacles(Interval { begin: time, end: time, step: 1.0 }, &mut obstacles);
         let places = Places { nodes: position, obstacles: &obstacles[0] };
@@ -348,18 +376,14 @@ impl Stage {
         };
         let at: Vec<_> = self.surfaces.iter().map(placed).collect();
         let extents: Vec<_> = at.iter().map(|points| Extent::around(points.iter().copied())).collect();
-        let mut count = 0;
-        for one in 0..self.bodies {
-            for other in one..extents.len() {
-                let [mine, theirs] =
-                    [one, other].map(|number| Placed { surface: &self.surfaces[number], at: &at[number] });
-                let is_near = extents[one].distance(&extents[other]) <= mine.radius() + theirs.radius();
-                if is_near && self.law(one, other).is_some() {
-                    count += crossings([mine, theirs]).len();
-                }
-            }
-        }
-        count
+        let pairs = (0..self.bodies).flat_map(|one| (one..extents.len()).map(move |other| [one, other]));
+        let count = |[one, other]: [usize; 2]| {
+            let both = [one, other].map(|number| Placed { surface: &self.surfaces[number], at: &at[number] });
+            let is_near = extents[one].distance(&extents[other]) <= both[0].radius() + both[1].radius();
+            let count = if is_near && self.law(one, other).is_some() { crossings(both).len() } else { 0 };
+            ([self.side(one), self.side(other)], count)
+        };
+        pairs.map(count).filter(|&(_, count)| count > 0).collect()
     }
 
     /// How many steps of ΔT (s), at most `most`, bodies can take alone, and the speed (m/s) up to which they can: above it they might

@@ -97,11 +97,15 @@ impl DormandPrince {
                 }
                 continue;
             }
+            let impulses = part.system.impulses.as_ref().map(|impulses| (impulses, impulses.waiting()));
             let has_met = part.finish_and_tell(state, next, &mut self.before_contact)?;
             if has_met
                 && searches < MOST_SEARCHES
                 && let Some(shorter) = self.until_contact(step, next)
             {
+                if let Some((impulses, waiting)) = impulses {
+                    impulses.forget(waiting);
+                }
                 step = shorter;
                 searches += 1;
                 continue;

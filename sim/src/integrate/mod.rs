@@ -381,7 +381,11 @@ impl Dynamics for ByForces {
             let interval = system.interval(state.steps);
             let step = Step { system, interval, limit: limit.at(interval.end) };
             step.begin(state, &mut self.next);
-            self.method.step(&step, state, &mut self.next)?;
+            let done = self.method.step(&step, state, &mut self.next);
+            if let Some(impulses) = &system.impulses {
+                if done.is_ok() { impulses.keep() } else { impulses.forget(0) }
+            }
+            done?;
             swap(state, &mut self.next);
             state.steps += 1;
         }

@@ -66,7 +66,8 @@ impl Dynamics for ByKernel {
             state.memory.constraints.clone()
         });
         let Surroundings { gravity, grips, forces, loads, .. } = &system.surroundings;
-        let (obstacles, apart) = (&system.met_by_nodes()[..], &system.apart()[..]);
+        let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
+        let (obstacles, apart, impulses) = (&obstacles[..], &system.apart()[..], system.impulses.as_ref());
         let spans: Vec<_> = grips.iter().map(Grip::span).collect();
         let is_still = obstacles.iter().all(|obstacle| obstacle.is_still());
         let target = rollback.steps() + count;
@@ -95,6 +96,7 @@ impl Dynamics for ByKernel {
             };
             let timing = rollback.scheme().timing();
             let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
+            let unfeeling = system.unfeeling(system.interval(begin), memory);
             let end = system.interval(begin).end;
             let overlap = |span: &Range<usize>, nodes: &Range<usize>| span.start < nodes.end && nodes.start < span.end;
             let hold = |nodes: &Range<usize>| {
@@ -110,7 +112,7 @@ impl Dynamics for ByKernel {
             };
             let meet = |step: u64, before: Nodes<'_>, after: &mut State, changed: &mut Vec<u32>| {
                 let (interval, State { position, velocity, .. }) = (system.interval(step), after);
-                system.meet(End { interval, before, position, velocity, timing, changed }, memory);
+                system.meet(End { interval, before, position, velocity, timing, changed, impulses }, memory);
             };
             let alone = |step: u64, at: Nodes<'_>, most: u64| {
                 // Constraints may take nodes anywhere.
@@ -127,12 +129,17 @@ impl Dynamics for ByKernel {
                 push: if loads.is_empty() { None } else { Some(&push) },
                 bounds: &met.bounds,
                 row: &|step| met.row(step),
-                resolve: &|step, position, velocity, acceleration| {
-                    for obstacle in &met.placed[met.row(step)] {
+                resolve: &|step, node, position, velocity, acceleration| {
+                    for (obstacle, &number) in met.placed[met.row(step)].iter().zip(&numbers) {
+                        let before = [*position, *velocity];
                         obstacle.rebound(position, velocity, acceleration);
+                        if unfeeling.get(node) == Some(&false) {
+                            system.feel(system.interval(step).end, [number, node], before, [*position, *velocity]);
+                        }
                     }
                 },
-                floor: met.floor(),
+                impulses,
+                floor: met.floor().filter(|_| impulses.is_none()),
                 apart,
                 grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
                 held: &[],
@@ -154,7 +161,7 @@ impl Dynamics for ByKernel {
 
     fn settle(&mut self, state: &mut State) {
         if let Some(known) = &self.constraints {
-            let State { position, velocity, memory: Memory { model, constraints, integrator }, steps, .. } = state;
+            let State { position, velocity, memory: Memory { model, constraints, integrator, .. }, steps, .. } = state;
             self.rollback.store(position, velocity, model);
             constraints.clone_from(known);
             // Only the reference code has a memory of the integrator.

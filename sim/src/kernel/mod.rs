@@ -25,7 +25,7 @@ pub(crate) use shapes::strains;
 pub(crate) use stepper::{Scheme, Stepper};
 
 use crate::body::Body;
-use crate::contact::{Bound, Floor};
+use crate::contact::{Bound, Floor, Impulses};
 use crate::lanes::Set;
 use crate::law::{ByLaw, Energy, Filled, Law};
 use crate::state::{Nodes, State};
@@ -105,9 +105,9 @@ pub(crate) mod damped {
     pub(crate) const DEFORMING: u8 = 2;
 }
 
-/// Contact of a node at the end of a step of this number: changes its position (m) and velocity (m/s). The last
-/// argument is its constant acceleration in the step (m/s²), zero if it moved at constant velocity.
-pub(crate) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
+/// Contact of a node at the end of a step: takes the numbers of the step and of the node, and changes its position (m) and velocity (m/s).
+/// The last argument is its constant acceleration in the step (m/s²), zero if it moved at constant velocity.
+pub(crate) type Resolve<'a> = dyn Fn(u64, usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
 
 /// Called with a node, its position (m) and its velocity (m/s).
 pub(crate) type PlaceNode<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
@@ -159,6 +159,8 @@ pub(crate) struct Around<'a> {
     pub(crate) row: &'a (dyn Fn(u64) -> Range<usize> + Sync),
     /// Contact of a node within one of the bounds.
     pub(crate) resolve: &'a Resolve<'a>,
+    /// Where it adds up impulses, if anywhere.
+    pub(crate) impulses: Option<&'a Impulses>,
     /// The only obstacle, if it is a floor that does not move. For nodes that moved at constant velocity the kernel
     /// then computes contact in lanes, with the same bits as `resolve`.
     pub(crate) floor: Option<Floor>,

@@ -298,7 +298,7 @@ impl Arrays {
             };
             let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
             let force = update.pushed(force, |lane| at + lane);
-            let lost = update.advance(&mut nodes, force, inverse_mass);
+            let lost = update.advance(&mut nodes, force, inverse_mass, |lane| at + lane);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
             if stage.stores_acceleration() {

@@ -183,7 +183,11 @@ impl PartStepper {
     /// Executes some of the passes; see [`Stepper::run`]. Grips place nodes after each of them.
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let Self { stepper, nodes, .. } = self;
-        let around = &Around { forces: around.forces.get(nodes.clone()).unwrap_or_default(), ..*around };
+        let (first, forces) = (nodes.start, around.forces.get(nodes.clone()).unwrap_or_default());
+        let resolve = |step: u64, node: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
+            (around.resolve)(step, first + node, position, velocity, acceleration);
+        };
+        let around = &Around { forces, resolve: &resolve, ..*around };
         let free = Around { bounds: &[], row: &|_| 0..0, floor: None, ..*around };
         let around = if around.apart.contains(nodes) { &free } else { around };
         let lost = match around.grips.filter(|grips| (grips.hold)(nodes)) {
@@ -285,6 +289,7 @@ impl Rollback {
             if self.kept != Some(from) {
                 self.parts.iter_mut().for_each(|part| part.stepper.keep());
                 self.kept = Some(from);
+                around.impulses.inspect(|impulses| impulses.keep());
             }
             let mut end = until.min(from + Self::KEPT);
             if let Some(count) = self.run_alone(end - self.steps, around, crew) {
@@ -299,7 +304,7 @@ impl Rollback {
             // step. It is found by repeating the steps before with one thread.
             let mut node = 0;
             loop {
-                self.parts.iter_mut().for_each(|part| part.stepper.restore());
+                self.restore(around);
                 match self.run(from..end, around, &Crew::new(1)) {
                     Some(lost) => (end, node) = (lost.step, lost.node),
                     None => break,
@@ -325,11 +330,17 @@ impl Rollback {
         if self.run(self.steps..self.steps + count, &apart, crew).is_none() {
             return Some(count);
         }
-        self.parts.iter_mut().for_each(|part| part.stepper.restore());
+        self.restore(around);
         let from = self.kept?;
         let lost = self.run(from..self.steps, around, crew);
         debug_assert!(lost.is_none(), "steps that were taken before");
         None
+    }
+
+    /// Goes back to the copy.
+    fn restore(&mut self, around: &Around<'_>) {
+        self.parts.iter_mut().for_each(|part| part.stepper.restore());
+        around.impulses.inspect(|impulses| impulses.forget(0));
     }
 
     /// Takes steps, until a node is too fast. The state is then undefined.

@@ -117,11 +117,17 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
     }
 
     /// Moves nodes by their forces (N) and inverse masses (1/kg; zero in lanes without a node), and computes contact.
-    /// Returns one bit for each lane that exceeds the speed limit.
+    /// `node` tells the node in each lane. Returns one bit for each lane that exceeds the speed limit.
     #[inline(always)]
-    pub(crate) fn advance(&self, nodes: &mut NodeVector<L>, force: [L; 3], inverse_mass: L) -> u32 {
+    pub(crate) fn advance(
+        &self,
+        nodes: &mut NodeVector<L>,
+        force: [L; 3],
+        inverse_mass: L,
+        node: impl Fn(usize) -> usize,
+    ) -> u32 {
         let lost = self.go(nodes, force, inverse_mass);
-        self.meet(nodes, inverse_mass);
+        self.meet(nodes, inverse_mass, node);
         lost
     }
 
@@ -200,7 +206,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
     /// The second half of [`Self::advance`]: contact at the end of a step. It does nothing where no lane is
     /// [near](Self::near).
     #[inline(always)]
-    pub(crate) fn meet(&self, nodes: &mut NodeVector<L>, inverse_mass: L) {
+    pub(crate) fn meet(&self, nodes: &mut NodeVector<L>, inverse_mass: L, node: impl Fn(usize) -> usize) {
         let zero = L::splat(0.0);
         let inside = self.near(nodes) & L::bits(zero.lt(inverse_mass));
         if inside == 0 {
@@ -214,7 +220,8 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
         // The constant acceleration in the step, or the mean one: zero, except in velocity Verlet and compositions.
         let rests = if self.stage.keeps_acceleration() { nodes.acceleration } else { [zero; 3] };
         let rests = each!(3, axis => rests[axis].to_array());
-        touch(self.around.resolve, self.number, inside, &mut position, &mut velocity, &rests);
+        let numbers = each!(8, lane => node(lane.min(L::WIDTH - 1)));
+        touch(self.around.resolve, (self.number, numbers), inside, &mut position, &mut velocity, &rests);
         nodes.position = each!(3, axis => L::from_array(position[axis]));
         nodes.velocity = each!(3, axis => L::from_array(velocity[axis]));
     }
@@ -261,7 +268,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 #[inline(never)]
 fn touch(
     resolve: &Resolve<'_>,
-    number: u64,
+    (number, nodes): (u64, [usize; MOST]),
     inside: u32,
     position: &mut [[f64; MOST]; 3],
     velocity: &mut [[f64; MOST]; 3],
@@ -270,7 +277,7 @@ fn touch(
     for lane in (0..MOST).filter(|lane| inside >> lane & 1 == 1) {
         let of = |all: &[[f64; MOST]; 3]| DVec3::from_array(all.map(|axis| axis[lane]));
         let (mut p, mut v) = (of(position), of(velocity));
-        resolve(number, &mut p, &mut v, of(acceleration));
+        resolve(number, nodes[lane], &mut p, &mut v, of(acceleration));
         for axis in 0..3 {
             (position[axis][lane], velocity[axis][lane]) = (p[axis], v[axis]);
         }

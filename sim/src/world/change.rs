@@ -111,12 +111,16 @@ impl World {
         self.pause();
         self.system.surroundings = changed;
         self.system.renew_contact();
+        let (obstacles, steps) = (self.system.surroundings.obstacles.len(), self.state.steps);
+        for impulses in self.system.impulses.iter_mut().filter(|kept| kept.obstacles() != obstacles) {
+            *impulses = impulses.among(obstacles, steps);
+        }
         self.go_on();
         Ok(())
     }
 
     /// Takes the state out of the code that advances it.
-    fn pause(&mut self) {
+    pub(super) fn pause(&mut self) {
         self.settle();
         self.dynamics.restart();
     }

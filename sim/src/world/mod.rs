@@ -1,12 +1,13 @@
 //! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
 mod change;
+mod touching;
 
 use crate::body::Body;
 use crate::broken::Broken;
 use crate::crew::Crew;
 use crate::diagnose::Diagnose;
-use crate::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts};
+use crate::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts, Touching};
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::field::Field;
 use crate::integrate::{ByForces, Integrator, Method, Scales};
@@ -196,7 +197,8 @@ impl World {
             Some((kernels, scheme)) => Box::new(ByKernel::new(&parts, kernels, scheme)),
             None => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
-        let mut system = System { parts, mass, surroundings, contact: None, step, crew: Arc::default() };
+        let mut system =
+            System { parts, mass, surroundings, contact: None, impulses: None, step, crew: Arc::default() };
         system.renew_contact();
         let (limit, wanted) = (system.speed_limit(&state), Diagnostic::ALL.to_vec());
         Self { system, dynamics, limit, field: None, wanted, state }
@@ -260,7 +262,7 @@ impl World {
     /// Advances by a number of steps. After a divergence only the clock advances.
     pub fn advance(&mut self, steps: u64) {
         self.advance_steps(steps);
-        self.dynamics.settle(&mut self.state);
+        self.settle();
     }
 
     /// Advances towards a moment by at most `most_steps` steps, and returns whether it has been reached. The states
@@ -275,7 +277,7 @@ impl World {
         self.advance_steps(left.min(most_steps));
         let is_there = left <= most_steps;
         if is_there {
-            self.dynamics.settle(&mut self.state);
+            self.settle();
         }
         is_there
     }
@@ -287,14 +289,20 @@ impl World {
 
     /// Makes [`Self::state`] the present state, also between moments. It changes no bit of later states.
     pub fn settle(&mut self) {
-        self.dynamics.settle(&mut self.state);
+        let Self { system, dynamics, state, .. } = self;
+        dynamics.settle(state);
+        match &system.impulses {
+            Some(_) if dynamics.is_recorded() => {}
+            Some(impulses) => impulses.store(&mut state.memory.contact),
+            None => state.memory.contact.clear(),
+        }
     }
 
     fn advance_steps(&mut self, steps: u64) {
         let Self { system, dynamics, limit, state, .. } = self;
         if state.status == Status::Ok {
             let last = dynamics.steps(state).saturating_add(steps);
-            let Err(runaway) = dynamics.advance(system, limit, state, steps) else { return };
+            let Err(runaway) = system.advance_intervals(&mut **dynamics, limit, state, steps) else { return };
             dynamics.settle(state);
             dynamics.restart();
             state.status = Status::Diverged(dynamics.divergence(system, state, runaway));
@@ -310,9 +318,11 @@ impl World {
         let Status::Diverged(Divergence { step, .. }) = self.state.status else { return None };
         let Self { system, dynamics, limit, state, .. } = self;
         let mut before = State { steps: step - 1, status: Status::Ok, ..state.clone() };
+        let impulses = system.impulses.take();
         dynamics.restart();
         let again = dynamics.advance(system, limit, &mut before, 1);
         dynamics.restart();
+        system.impulses = impulses;
         Some((again.err()?.node, limit.at(system.interval(step - 1).end)))
     }
 
@@ -354,6 +364,8 @@ impl World {
         assert!(self.takes(&state), "a state of the same bodies");
         self.state = state;
         self.dynamics.restart();
+        let State { memory, steps, .. } = &self.state;
+        self.system.impulses.iter_mut().for_each(|impulses| impulses.load(&memory.contact, *steps));
     }
 
     /// Whether the run has diverged.
@@ -383,14 +395,6 @@ impl World {
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
     }
 
-    /// The number of pairs of facets of surfaces that meet, of bodies and obstacles, and cross each other in the present state; 0 in a world
-    /// where no surfaces meet.
-    pub fn crossings(&self) -> usize {
-        let Self { system: System { contact, step, .. }, state, .. } = self;
-        let time = state.steps as f64 * step;
-        contact.as_ref().map_or(0, |stage| stage.crossings(&state.position, time))
-    }
-
     /// The internal forces on each node in the present state (N).
     pub fn forces(&self) -> Vec<glam::DVec3> {
         let Self { system, state, .. } = self;
@@ -415,9 +419,10 @@ impl World {
 
     /// The diagnostics in `wanted` of all bodies together, and those of each. The others are zero and cost no time.
     pub fn diagnostics_by_body(&self, wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
-        let bodies = self.system.parts.iter().map(|part| {
+        let touching = self.touching(wanted.contains(&Diagnostic::Crossings));
+        let bodies = self.system.parts.iter().zip(touching).map(|(part, touching)| {
             let report = || self.dynamics.report(part, &self.state, None, &self.system.crew);
-            self.facts(part, report)
+            self.facts(part, touching, report)
         });
         self.of_facts(&bodies.collect::<Vec<_>>(), wanted)
     }
@@ -434,13 +439,14 @@ impl World {
         (all, of_bodies)
     }
 
-    fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
+    fn facts<'a>(&'a self, part: &'a Part, touching: Touching, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
         let global_rotations = part.global_rotations(&self.state.memory.model);
         let broken = part.count_broken(&self.state.memory.model);
         let gone = part.broken_elements(&self.state.memory.model);
         part.diagnose.facts(
             part.nodes_of(self.state.nodes()),
             [global_rotations, broken],
+            touching,
             gone,
             report,
             &self.system.crew,
@@ -452,7 +458,8 @@ impl World {
         let Self { system, dynamics, state, field, wanted, .. } = self;
         let crew = &*system.crew;
         let (mut bodies, mut energies) = (Vec::new(), Vec::new());
-        for part in &system.parts {
+        let touching = self.touching(wanted.contains(&Diagnostic::Crossings));
+        for (part, touching) in system.parts.iter().zip(touching) {
             let mut of_nodes = Vec::new();
             let known = (*field == Some(Field::ElasticEnergy)).then(|| {
                 of_nodes.resize(part.body.len(), 0.0);
@@ -465,7 +472,8 @@ impl World {
                 }
                 report
             });
-            bodies.push(self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew))));
+            let report = move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew));
+            bodies.push(self.facts(part, touching, report));
             energies.push(of_nodes);
         }
         let (diagnostics, of_bodies) = self.of_facts(&bodies, wanted);
@@ -508,6 +516,7 @@ impl World {
             field,
             diagnostics,
             of_bodies,
+            contact_forces: self.contact_forces().unwrap_or_default(),
             status: state.status,
             unsolved: dynamics.unsolved(state),
         }

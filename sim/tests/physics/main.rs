@@ -15,6 +15,7 @@ mod example_model;
 mod figures;
 #[cfg(feature = "scene")]
 mod fill;
+mod forces;
 mod grips;
 mod grounds;
 #[cfg(feature = "scene")]

@@ -42,15 +42,15 @@ pub(super) struct Placed {
 }
 
 /// Numbers from −1 to 1 that look random.
-struct Noise(u64);
+pub(super) struct Noise(pub(super) u64);
 
 impl Noise {
-    fn number(&mut self) -> f64 {
+    pub(super) fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn turn(&mut self) -> DQuat {
+    pub(super) fn turn(&mut self) -> DQuat {
         let [x, y, z, w] = [(); 4].map(|()| self.number());
         DQuat::from_xyzw(x, y, z, w).normalize()
     }
@@ -129,7 +129,7 @@ fn crossings(bodies: [&Body; 2], at: [&[DVec3]; 2]) -> usize {
 }
 
 /// The momentum (kg m/s), angular momentum (kg m²/s) and kinetic energy (J) of all nodes.
-fn moments(world: &World, mass: &[f64]) -> (DVec3, DVec3, f64) {
+pub(super) fn moments(world: &World, mass: &[f64]) -> (DVec3, DVec3, f64) {
     let State { position, velocity, .. } = world.state();
     let mut sums = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for ((&at, &speed), &mass) in position.iter().zip(velocity).zip(mass) {
@@ -140,7 +140,7 @@ fn moments(world: &World, mass: &[f64]) -> (DVec3, DVec3, f64) {
     sums
 }
 
-fn with_contacts(restitution: f64, friction: f64) -> Surroundings {
+pub(super) fn with_contacts(restitution: f64, friction: f64) -> Surroundings {
     let contacts = Contacts { restitution, friction, ..Contacts::default() };
     Surroundings { contacts: Some(contacts), ..Surroundings::default() }
 }
@@ -157,7 +157,7 @@ fn impact(noise: &mut Noise, stiffness: f64, restitution: f64, friction: f64) ->
     ([Arc::clone(&body), body], world)
 }
 
-fn still(at: DVec3) -> Placed {
+pub(super) fn still(at: DVec3) -> Placed {
     Placed { at, turned: DQuat::IDENTITY, speed: DVec3::ZERO }
 }
 

@@ -57,7 +57,8 @@ fn closes(speed: f64, restitution: f64, most: Option<u64>) -> Measured {
     let mut worst = 0;
     for _ in 0..150 {
         world.advance(2);
-        worst = worst.max(world.crossings());
+        let found = world.crossings().into_iter().flatten();
+        worst = worst.max(found.map(|(_, count)| count).sum::<usize>());
     }
     let what = format!("a U that closes with {speed} m/s at each side, e = {restitution}: triangles that cross");
     match most {

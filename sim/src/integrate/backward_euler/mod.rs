@@ -72,6 +72,9 @@ impl Method for BackwardEuler {
             is_solved = self.is_solved(step, state, next);
         }
         next.memory.model.copy_from_slice(&self.evaluations[0].memory);
+        if is_solved {
+            self.balance(step, next);
+        }
         step.check(next)?;
         let known = Unsolved::remembered(&state.memory.integrator);
         let unsolved = if is_solved { known } else { Some(Unsolved::after(known, step.interval.end, self.largest())) };
@@ -156,6 +159,21 @@ impl BackwardEuler {
             }
             idle = if size < 0.25 * least || !is_whole { 0 } else { idle + 1 };
             least = least.min(size);
+        }
+    }
+
+    /// Moves each body as a whole by the mean of its residual. Its internal forces stay as they are, so its momentum is then that of its forces to
+    /// round-off, however small the residual is. Bodies with nodes that are held have no such momentum.
+    fn balance(&self, step: &Step<'_>, next: &mut State) {
+        for nodes in step.system.parts.iter().map(|part| part.nodes.clone()) {
+            if self.is_held[nodes.clone()].contains(&true) {
+                continue;
+            }
+            let (mass, residual) = (&step.system.mass[nodes.clone()], &self.residual[nodes.clone()]);
+            let momentum: DVec3 = mass.iter().zip(residual).map(|(&mass, &residual)| residual * mass).sum();
+            let mean = momentum / mass.iter().sum::<f64>();
+            next.velocity[nodes.clone()].iter_mut().for_each(|velocity| *velocity += mean);
+            next.position[nodes].iter_mut().for_each(|position| *position += mean * step.interval.step);
         }
     }
 

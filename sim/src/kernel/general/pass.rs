@@ -54,7 +54,8 @@ impl<W: Law> Work for OnePart<'_, W> {
                 let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
                 let sum = own.update.pushed([x, y, z], |lane| part.index[first + lane] as usize);
-                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), sum, accelerations);
+                let node = |lane: usize| part.index[first + lane] as usize;
+                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), sum, accelerations, node);
                 lost = first_of(lost, lanes, self.around.held, |lane| part.index[first + lane]);
             }
         }
@@ -104,7 +105,13 @@ impl<'a, L: Lanes> Own<'a, L> {
     /// # Safety
     /// Records and accelerations belong to this thread alone.
     #[inline(always)]
-    unsafe fn advance(&self, record: impl Fn(usize) -> *mut f64, sum: [L; 3], accelerations: *mut f64) -> u32 {
+    unsafe fn advance(
+        &self,
+        record: impl Fn(usize) -> *mut f64,
+        sum: [L; 3],
+        accelerations: *mut f64,
+        node: impl Fn(usize) -> usize,
+    ) -> u32 {
         // SAFETY: the caller's.
         unsafe {
             let [px, py, vx, vy, pz, vz, inverse_mass, valence] = L::columns(|lane| record(lane).cast_const());
@@ -118,7 +125,7 @@ impl<'a, L: Lanes> Own<'a, L> {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = NodeVector { position, velocity, acceleration };
-            let lost = self.update.advance(&mut nodes, force, inverse_mass);
+            let lost = self.update.advance(&mut nodes, force, inverse_mass, node);
             if self.stage.stores_acceleration() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
@@ -180,7 +187,8 @@ impl Work for SharedNodes<'_> {
                 let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
                 let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
                 let sum = own.update.pushed([x, y, z], |lane| shared.index[first + lane] as usize);
-                let lanes = own.advance(|lane| rows[lane], sum, accelerations);
+                let node = |lane: usize| shared.index[first + lane] as usize;
+                let lanes = own.advance(|lane| rows[lane], sum, accelerations, node);
                 lost = first_of(lost, lanes, around.held, |lane| shared.index[first + lane]);
                 for (lane, row) in rows.iter().enumerate().take(L::WIDTH) {
                     for place in places(lane).iter().skip(1) {

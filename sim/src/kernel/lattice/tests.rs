@@ -121,7 +121,7 @@ fn run_by(
     let (mut rollback, mut memory) = (rollback(body, parameters, scheme, set), rotations(body, state));
     rollback.load(0, &state.position, &state.velocity, &memory);
     let floor = floor();
-    let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
+    let resolve = |_: u64, _: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
     let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
     for call in 1..=calls {
         rollback.advance(call * steps, &around, &Crew::new(threads)).expect("no runaway");
@@ -230,7 +230,7 @@ fn steps_are_those_of_the_kernel_for_any_elements() {
         let mut general = Rollback::new(parts, scheme);
         general.load(0, &state.position, &state.velocity, &memory);
         let floor = floor();
-        let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
+        let resolve = |_: u64, _: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
         let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
         general.advance(200, &around, &Crew::new(1)).expect("no runaway");
         let mut of_general = state.clone();

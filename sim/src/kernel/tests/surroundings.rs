@@ -20,7 +20,7 @@ fn nodes_rebound_as_in_the_reference() {
         let model = shape_based(TWICE, 10.0);
         let mut world = reference(&body, &start.0, &model, scheme, vec![floor.clone()]);
         world.advance(300);
-        let resolve = |_: u64, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
+        let resolve = |_: u64, _: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
             floor.at(STEP, STEP).rebound(position, velocity, acceleration);
         };
         for bound in [
@@ -87,7 +87,7 @@ fn the_end_of_a_step_has_the_limit_of_that_step() {
         let around = Around {
             bounds: &[everywhere],
             row: &|_| 0..1,
-            resolve: &|step, _, velocity, _| velocity.x = if step == 7 { 50.0 } else { velocity.x },
+            resolve: &|step, _, _, velocity, _| velocity.x = if step == 7 { 50.0 } else { velocity.x },
             speed_limit: &|step| if step == 7 { 40.0 } else { 1000.0 },
             ..FREE
         };

@@ -573,7 +573,7 @@ impl Sweep<'_> {
                 let to = self.nodes(plane, at);
                 let acceleration = if stage.keeps_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = NodeVector { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
-                update.meet(&mut nodes, inverse_mass(to));
+                update.meet(&mut nodes, inverse_mass(to), |lane| plane * self.grid.layer() + at + lane);
                 thrice!(axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));

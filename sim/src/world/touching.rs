@@ -1,0 +1,104 @@
+//! Forces of contact, for those who ask for them.
+
+use super::World;
+use crate::contact::{ContactForce, Impulses, Side};
+use crate::diagnostics::Touching;
+use crate::dynamics::{Dynamics, SpeedLimit};
+use crate::state::{Runaway, State};
+use crate::system::System;
+use crate::world::Moment;
+
+impl World {
+    /// Keeps the mean forces of contact from now on, over intervals of time: an interval ends with the step nearest to each multiple of the
+    /// moment `every`, and with every step if it is shorter. With an infinite one it ends when [`Self::end_contact_interval`] is called. Bodies
+    /// move with the same bits as without, and a fast step costs a little more where nodes meet obstacles. Forces of a recorded world are
+    /// those that were recorded.
+    ///
+    /// The sum of the forces on a body times the length of an interval is what contact has changed of its momentum in it. What one body
+    /// exerts on another is the opposite of what that exerts on it. Obstacles exert nothing on nodes that are held while nodes meet obstacles,
+    /// and surfaces also push nodes that are held. The torques are what it has
+    /// changed of the angular momentum about the origin.
+    ///
+    /// # Panics
+    /// If `every` is not above zero.
+    pub fn keep_contact_forces(&mut self, every: Moment) {
+        assert!(every.count / every.rate > 0.0, "an interval above zero");
+        self.pause();
+        let sizes = [self.system.surroundings.obstacles.len(), self.system.parts.len()];
+        let mut impulses = Impulses::new(sizes, every, self.state.steps);
+        impulses.load(&self.state.memory.contact, self.state.steps);
+        impulses.store(&mut self.state.memory.contact);
+        self.system.impulses = Some(impulses);
+    }
+
+    /// Ends the present interval of contact forces. It does nothing at its start, and without intervals.
+    pub fn end_contact_interval(&mut self) {
+        self.pause();
+        let System { impulses, step, .. } = &mut self.system;
+        impulses.iter_mut().for_each(|impulses| impulses.end(self.state.steps, *step));
+        self.settle();
+    }
+
+    /// The mean forces of contact in the last interval that has ended, of each obstacle and then of each body on each other body; `None`
+    /// before the first end, and if they are [not kept](Self::keep_contact_forces).
+    pub fn contact_forces(&self) -> Option<Vec<ContactForce>> {
+        self.system.impulses.as_ref()?.forces(&self.state.memory.contact)
+    }
+
+    /// The numbers of pairs of facets that cross each other in the present state, of surfaces that meet: of each two bodies, a body and an
+    /// obstacle, or a body with itself, where there are some. In the plane facets are sides. `None` if no surfaces meet.
+    pub fn crossings(&self) -> Option<Vec<([Side; 2], usize)>> {
+        let time = self.system.interval(self.state.steps).begin;
+        Some(self.system.contact.as_ref()?.crossings(&self.state.position, time))
+    }
+
+    /// What diagnostics tell of contact, of each body: the mean force and its torque, and the crossings of its own and those that it shares
+    /// with other bodies, which are counted only if that is wanted.
+    pub(super) fn touching(&self, is_counted: bool) -> Vec<Touching> {
+        let mut all = vec![Touching::default(); self.system.parts.len()];
+        for ContactForce { on, force, torque, .. } in self.contact_forces().iter().flatten() {
+            let Touching { force: sum, torque: turning, .. } = &mut all[*on];
+            *sum = Some(sum.unwrap_or_default() + *force);
+            *turning = Some(turning.unwrap_or_default() + *torque);
+        }
+        let counted = is_counted.then(|| self.crossings()).flatten();
+        if counted.is_some() {
+            all.iter_mut().for_each(|touching| touching.crossings = Some([0; 2]));
+        }
+        for (sides, count) in counted.iter().flatten() {
+            let is_shared = matches!(sides, [Side::Body(one), Side::Body(other)] if one != other);
+            for side in &sides[..if is_shared { 2 } else { 1 }] {
+                let Side::Body(body) = side else { continue };
+                all[*body].crossings.iter_mut().for_each(|sums| sums[usize::from(is_shared)] += count);
+            }
+        }
+        all
+    }
+}
+
+impl System {
+    /// Takes steps, and ends the intervals of contact forces on the way. Nothing is repeated across an end.
+    pub(super) fn advance_intervals(
+        &mut self,
+        dynamics: &mut dyn Dynamics,
+        limit: &SpeedLimit,
+        state: &mut State,
+        count: u64,
+    ) -> Result<(), Runaway> {
+        let mut left = count;
+        while let Some(impulses) = self.impulses.as_ref().filter(|_| left > 0 && !dynamics.is_recorded()) {
+            let begin = dynamics.steps(state);
+            let end = impulses.next_end(begin, self.step);
+            let steps = left.min(end - begin);
+            dynamics.advance(self, limit, state, steps)?;
+            left -= steps;
+            if begin + steps == end {
+                dynamics.settle(state);
+                dynamics.restart();
+                let step = self.step;
+                self.impulses.iter_mut().for_each(|impulses| impulses.end(end, step));
+            }
+        }
+        dynamics.advance(self, limit, state, left)
+    }
+}

@@ -1,0 +1,195 @@
+//! Forces of contact: what they add up to, and that asking for them changes nothing.
+
+use super::surfaces::{Noise, Placed, SIDE, block, by, moments, still, with_contacts};
+use glam::{DQuat, DVec3};
+use localshape_sim::{
+    Body, ContactForce, Contacts, Crew, Grip, Integrator, Kernel, Moment, Motion, Obstacle, Offset, Shape, Side, State,
+    Status, Surroundings, World,
+};
+use std::sync::Arc;
+
+const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.1);
+
+fn obstacle(shape: Shape) -> Obstacle {
+    let motion = Motion::Still;
+    Obstacle { shape, motion, pivot: DVec3::ZERO, restitution: 0.2, friction: 0.4, friction_of: Default::default() }
+}
+
+/// Three blocks that fall on each other, on a floor, a plate and a ball.
+fn heap(integrator: Integrator, kernel: Kernel, has_surfaces: bool) -> (Vec<Arc<Body>>, World) {
+    let mut noise = Noise(5);
+    let bodies: Vec<_> = (0..3u32)
+        .map(|at| {
+            let place = DVec3::new(0.12 * f64::from(at % 2), 0.16 + 0.34 * f64::from(at), 0.05 * noise.number());
+            let placed = Placed { at: place, turned: noise.turn(), speed: DVec3::Y * -2.0 };
+            (block([2, 1 + at, 2]), if at == 0 { still(DVec3::Y * 0.06) } else { placed })
+        })
+        .collect();
+    let obstacles = vec![
+        obstacle(Shape::Floor { normal: DVec3::Y, height: 0.0 }),
+        obstacle(Shape::Plate { point: DVec3::X * 0.3, normal: -DVec3::X }),
+        obstacle(Shape::Sphere { centre: DVec3::new(-0.15, 0.1, 0.0), radius: 0.04 }),
+    ];
+    let around = Surroundings { gravity: GRAVITY, obstacles, ..with_contacts(0.3, 0.4) };
+    let around = if has_surfaces { around } else { Surroundings { contacts: None, ..around } };
+    let world = by(integrator, kernel, &bodies, 2e3, 0.02, around);
+    (bodies.into_iter().map(|(body, _)| body).collect(), world)
+}
+
+const INTEGRATORS: [Integrator; 7] = [
+    Integrator::SemiImplicitEuler,
+    Integrator::ExplicitEuler,
+    Integrator::VelocityVerlet,
+    Integrator::Pefrl,
+    Integrator::RungeKutta,
+    Integrator::DormandPrince,
+    Integrator::BackwardEuler,
+];
+
+fn is_fast(integrator: Integrator) -> bool {
+    !matches!(integrator, Integrator::RungeKutta | Integrator::DormandPrince | Integrator::BackwardEuler)
+}
+
+/// Of each body, gravity and contact change the momentum to round-off, with every integrator, code and rule; a pair pushes itself nowhere.
+#[test]
+fn forces_are_the_change_of_momentum() {
+    for (integrator, has_surfaces) in INTEGRATORS.into_iter().flat_map(|one| [(one, true), (one, false)]) {
+        for kernel in [Kernel::Fast, Kernel::Reference] {
+            if kernel == Kernel::Fast && !is_fast(integrator) {
+                continue;
+            }
+            let (bodies, mut world) = heap(integrator, kernel, has_surfaces);
+            let step = 0.02 * std::f64::consts::TAU / 2e3f64.sqrt();
+            world.keep_contact_forces(Moment::at(7.0 * step));
+            let count = if integrator == Integrator::ExplicitEuler { 5 } else { 40 };
+            let momenta = |world: &World| {
+                let State { position, velocity, .. } = world.state();
+                let mut first = 0;
+                let of = |body: &Arc<Body>| {
+                    let own = first..first + body.len();
+                    first = own.end;
+                    let part = State::new(position[own.clone()].to_vec(), velocity[own].to_vec());
+                    part.velocity.iter().zip(body.mass()).map(|(&speed, &mass)| speed * mass).sum::<DVec3>()
+                };
+                bodies.iter().map(of).collect::<Vec<_>>()
+            };
+            let mut before = momenta(&world);
+            assert_eq!(world.contact_forces(), None);
+            let mut most: f64 = 0.0;
+            for _ in 0..count {
+                world.advance(7);
+                let (now, forces) = (momenta(&world), world.contact_forces().expect("an interval has ended"));
+                let about = format!("{integrator:?} {kernel:?} {has_surfaces} at step {}", world.steps());
+                for (at, body) in bodies.iter().enumerate() {
+                    let mass: f64 = body.mass().iter().sum();
+                    let force: DVec3 = forces.iter().filter(|one| one.on == at).map(|one| one.force).sum();
+                    let off = now[at] - before[at] - (GRAVITY * mass + force) * (7.0 * step);
+                    assert!(off.length() < 1e-12 * mass * 3.0, "{about}: {off} of body {at}");
+                    most = most.max(force.length());
+                }
+                for ContactForce { from, on, force, torque } in &forces {
+                    let Side::Body(from) = *from else { continue };
+                    let back = forces.iter().find(|one| (one.from, one.on) == (Side::Body(*on), from)).expect("both");
+                    assert!((back.force + *force).length() <= 1e-12 * (1.0 + force.length()), "{about}");
+                    let is_turned_back = integrator == Integrator::SemiImplicitEuler;
+                    let off = (back.torque + *torque).length();
+                    assert!(!is_turned_back || off <= 1e-12 * (1.0 + force.length()), "{about}: {off}");
+                    assert!(has_surfaces || *force == DVec3::ZERO);
+                }
+                before = now;
+            }
+            assert!(most > 20.0 && world.status() == Status::Ok, "{integrator:?} {kernel:?} {has_surfaces}: {most}");
+        }
+    }
+}
+
+/// Torques are the change of angular momentum of two bodies that hit each other, with friction.
+#[test]
+fn torques_are_the_change_of_angular_momentum() {
+    let body = block([3, 2, 3]);
+    let mut noise = Noise(3);
+    let placed = [-1.0, 1.0].map(|side| {
+        let at = DVec3::new(0.3 * side, 0.1 * noise.number(), 0.1 * noise.number());
+        (Arc::clone(&body), Placed { at, turned: noise.turn(), speed: DVec3::X * (-3.0 * side) })
+    });
+    let mut world = by(Integrator::SemiImplicitEuler, Kernel::Fast, &placed, 1e4, 0.02, with_contacts(0.8, 0.4));
+    world.keep_contact_forces(Moment::at(f64::INFINITY));
+    let of_one = |world: &World| {
+        let State { position, velocity, .. } = world.state();
+        let nodes = position.iter().zip(velocity).zip(body.mass());
+        nodes.map(|((at, &speed), &mass)| at.cross(speed * mass)).sum::<DVec3>()
+    };
+    let start = of_one(&world);
+    world.advance(300);
+    world.end_contact_interval();
+    let time = 300.0 * 0.02 * std::f64::consts::TAU / 100.0;
+    let forces = world.contact_forces().expect("an interval has ended");
+    let torque = forces.iter().find(|one| one.on == 0).expect("a pair").torque;
+    let (gained, told) = (of_one(&world) - start, torque * time);
+    assert!(gained.length() > 0.5 && (gained - told).length() < 1e-10, "{gained} {told}");
+    assert!(
+        (world.diagnostics_by_body(&[localshape_sim::Diagnostic::ContactTorque]).1[0].contact_torque - torque).length()
+            < 1e-12
+    );
+}
+
+/// States have the same bits with and without, however steps and threads are divided; and so have the forces.
+#[test]
+fn asking_changes_no_bit() {
+    for integrator in INTEGRATORS {
+        for (kernel, has_surfaces) in [(Kernel::Fast, true), (Kernel::Fast, false), (Kernel::Reference, true)] {
+            let (_, mut plain) = heap(integrator, kernel, has_surfaces);
+            plain.advance(150);
+            let told = |threads: usize, ways: &[u64], is_cut: bool| {
+                let (_, mut world) = heap(integrator, kernel, has_surfaces);
+                world.set_crew(Crew::new(threads));
+                world.keep_contact_forces(Moment { count: 1.0, rate: 20.0 });
+                for &way in ways {
+                    world.advance(way);
+                    if is_cut {
+                        let state = State::from_bytes(&world.state().to_bytes()).expect("what was written");
+                        world = heap(integrator, kernel, has_surfaces).1;
+                        world.keep_contact_forces(Moment { count: 1.0, rate: 20.0 });
+                        world.set_state(state);
+                    }
+                }
+                (world.state().clone(), world.contact_forces())
+            };
+            let first = told(1, &[150], false);
+            assert_eq!(first.0.position, plain.state().position, "{integrator:?} {kernel:?} {has_surfaces}");
+            assert_eq!(first.0.velocity, plain.state().velocity, "{integrator:?} {kernel:?} {has_surfaces}");
+            assert!(first.1.is_some());
+            assert_eq!(told(3, &[1, 40, 3, 106], false), first, "{integrator:?} {kernel:?} {has_surfaces}");
+            assert_eq!(told(2, &[13, 57, 80], true), first, "{integrator:?} {kernel:?} {has_surfaces}");
+        }
+    }
+}
+
+/// At rest the floor carries the weight; nodes that are held feel nothing.
+#[test]
+fn the_floor_carries_the_weight() {
+    let body = block([3, 2, 3]);
+    for (has_surfaces, is_held) in [(true, false), (false, false), (false, true)] {
+        let around = Surroundings {
+            gravity: DVec3::Y * -9.8,
+            obstacles: vec![obstacle(Shape::Floor { normal: DVec3::Y, height: -0.5 * 2.0 * SIDE })],
+            contacts: has_surfaces.then(Contacts::default),
+            ..Surroundings::default()
+        };
+        let nodes = (0..body.len() as u32).collect();
+        let grip = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::at(Offset::default()) };
+        let grips = if is_held { vec![grip] } else { Vec::new() };
+        let placed = Placed { at: DVec3::ZERO, turned: DQuat::IDENTITY, speed: DVec3::ZERO };
+        let around = Surroundings { grips, ..around };
+        let mut world = by(Integrator::VelocityVerlet, Kernel::Fast, &[(Arc::clone(&body), placed)], 3e4, 0.02, around);
+        world.keep_contact_forces(Moment::at(2.0));
+        world.advance((4.0 / (0.02 * std::f64::consts::TAU / 3e4f64.sqrt())) as u64 + 2);
+        let mass: f64 = body.mass().iter().sum();
+        let (force, momentum) = (world.diagnostics().contact_force, moments(&world, body.mass()).0);
+        let expected = if is_held { DVec3::ZERO } else { DVec3::Y * (9.8 * mass) };
+        assert!(
+            (force - expected).length() <= 1e-2 * expected.length(),
+            "{has_surfaces} {is_held}: {force} {momentum}"
+        );
+    }
+}
