@@ -14,11 +14,12 @@ use crate::reading::setting::Setting;
 use crate::runner::Frame;
 use crate::runner::cause::Cause;
 use crate::runner::growing::Growing;
-use crate::runner::{Frames, Next, Progress, Runner, Stored};
+use crate::runner::{Frames, Next, Progress, Runner, Stored, crossing};
 use crate::scene::{Run, Scene};
 use crate::sim::{self, Diagnostic, State};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::Path;
@@ -366,6 +367,7 @@ impl<'a> Session<'a> {
         let tell_meetings = |frames: &mut Frames<'_>| {
             frames.meetings().iter().filter(|_| !printing.quiet).for_each(|message| bar.suspend(|| note(message)));
         };
+        let mut crossed = BTreeSet::new();
         let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {
@@ -381,8 +383,12 @@ impl<'a> Session<'a> {
                 Some(file) => OutputError::reading(file)(error),
                 None => OutputError::writing(self.folder.path())(error),
             })?;
-            if let Next::Frame(_) = next {
+            if let Next::Frame(frame) = &next {
                 bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
+                let found = frame.runs.iter().filter_map(|run| Some((run.run, crossing(self.scene, run)?)));
+                found
+                    .filter(|&(run, _)| !printing.quiet && crossed.insert(run))
+                    .for_each(|(_, message)| bar.suspend(|| note(&message)));
             }
             if !self.take(next, pool, simulation, results)? {
                 break;

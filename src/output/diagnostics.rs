@@ -7,7 +7,8 @@ use crate::runner::TableRow;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::{Frame, RunFrame};
 use crate::scene::{ALL_BODIES, Scene};
-use crate::sim::{Diagnostic, Diagnostics, Status, Value};
+use crate::sim::{ContactForce, Diagnostic, Diagnostics, Side, Snapshot, Status, Value};
+use glam::DVec3;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -34,7 +35,8 @@ impl<'a> DiagnosticsWriter<'a> {
         let file = Growing::open(&hidden, None).map_err(OutputError::writing(&path))?;
         let mut writer = Self { scene, file, hidden, path };
         let heads = cells(["", ALL_BODIES], None, 0.0, Status::Ok, &Diagnostics::default());
-        let heads = heads.into_iter().map(|(head, _)| head);
+        let exerted = Exerted { scene, of: &[], forces: &[] }.cells(None);
+        let heads = heads.into_iter().chain(exerted).map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
     }
@@ -68,16 +70,22 @@ impl<'a> DiagnosticsWriter<'a> {
         for (place, RunFrame { run, snapshot, .. }) in frame.runs.iter().enumerate() {
             let run = &self.scene.runs[*run];
             let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
-            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics]| {
-                let all = std::iter::once((ALL_BODIES, all)).chain(bodies.iter().copied().zip(of_bodies));
-                rows.extend(all.map(|(body, one)| cells([&run.name, body], frame, time, status, one)));
+            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], forces: &[ContactForce]| {
+                let exerted = Exerted { scene: self.scene, of: &run.of, forces };
+                let own = (0..).zip(of_bodies).zip(&bodies).map(|((at, one), &body)| (Some(at), body, one));
+                rows.extend(std::iter::once((None, ALL_BODIES, all)).chain(own).map(|(at, body, one)| {
+                    let mut row = cells([&run.name, body], frame, time, status, one);
+                    row.extend(exerted.cells(at));
+                    row
+                }));
             };
             // The step of a frame has the row of the frame.
             let between = between.get(place).into_iter().flatten().filter(|row| row.time < snapshot.time);
-            for TableRow { time, all, of_bodies } in between {
-                add(None, *time, Status::Ok, all, of_bodies);
+            for TableRow { time, all, of_bodies, contact_forces } in between {
+                add(None, *time, Status::Ok, all, of_bodies, contact_forces);
             }
-            add(Some(frame.index), snapshot.time, snapshot.status, &snapshot.diagnostics, &snapshot.of_bodies);
+            let Snapshot { time, status, diagnostics, of_bodies, contact_forces, .. } = snapshot;
+            add(Some(frame.index), *time, *status, diagnostics, of_bodies, contact_forces);
         }
         self.append(&rows_as_csv(rows.into_iter().map(|row| row.into_iter().map(|(_, cell)| cell))))
     }
@@ -96,6 +104,43 @@ impl<'a> DiagnosticsWriter<'a> {
         let Self { file, hidden, path, .. } = self;
         let renamed = file.cut().and_then(|()| file.sync()).and_then(|_| fs::rename(hidden, &path));
         renamed.map_err(OutputError::writing(&path))
+    }
+}
+
+/// What obstacles and bodies exert in a row of a run.
+struct Exerted<'a> {
+    scene: &'a Scene,
+    /// The bodies of the run, by their numbers in the scene.
+    of: &'a [usize],
+    /// Empty if nothing is known.
+    forces: &'a [ContactForce],
+}
+
+impl Exerted<'_> {
+    /// Force and torque of each obstacle, and of each of several bodies, on a body of the run, or on all its bodies together, with the
+    /// headings of their columns. There are none where forces are not kept.
+    fn cells(&self, on: Option<usize>) -> Vec<(String, String)> {
+        let Self { scene, of, forces } = *self;
+        let obstacles = scene.obstacle_names.iter().enumerate().map(|(at, name)| (Some(Side::Obstacle(at)), name));
+        let own = |body: usize| of.iter().position(|&of| of == body).map(Side::Body);
+        let several = scene.bodies.iter().enumerate().filter(|_| scene.bodies.len() > 1);
+        let sides = obstacles.chain(several.map(|(at, body)| (own(at), &body.name)));
+        let quantities: [(&str, fn(&ContactForce) -> DVec3); 2] =
+            [("force", |one| one.force), ("torque", |one| one.torque)];
+        let of_side = |(from, name): (Option<Side>, &String)| {
+            let found = forces.iter().filter(move |one| Some(one.from) == from && on.is_none_or(|on| one.on == on));
+            let name = name.clone();
+            let is_known = from.is_some() && !forces.is_empty();
+            quantities.into_iter().flat_map(move |(key, quantity)| {
+                let sum = if is_known { found.clone().map(quantity).sum() } else { DVec3::NAN };
+                let head = format!("{key} of {name}");
+                ["x", "y", "z"]
+                    .into_iter()
+                    .zip(sum.to_array())
+                    .map(move |(axis, one)| (format!("{head}_{axis}"), exact(one)))
+            })
+        };
+        sides.filter(|_| scene.keeps_contact()).flat_map(of_side).collect()
     }
 }
 

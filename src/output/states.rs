@@ -36,7 +36,7 @@ const SPOOL: &str = ".localshape-states.partial";
 /// rows. A scene of several bodies also has their names (`bodies`) and the place of each node's body among them (`body`,
 /// N). Runs of other bodies have all these arrays but `bodies` of their own: `NAME.rest` and so on.
 ///
-/// For drawing, the archive also has the memory of models and constraints, `NAME.memory` (F × M), and the array of
+/// For drawing, the archive also has the memory of models, constraints and contact, `NAME.memory` (F × M), and the array of
 /// bytes `localshape` with an [`Origin`], a [`Course`] and the time series of the scene.
 ///
 /// Each array grows with every frame, and the number of frames is known only at the end. So frames are first written to
@@ -118,7 +118,8 @@ impl StatesWriter {
                 record += 8;
             }
             let nodes = state.position.len();
-            let memory = state.memory.model.len() + state.memory.constraints.len();
+            let memory = &state.memory;
+            let memory = memory.model.len() + memory.constraints.len() + memory.contact.len();
             let nodes_of = format!(" {nodes}, 3");
             for (quantity, shape, length) in [
                 ("position", nodes_of.clone(), 24 * nodes),
@@ -183,7 +184,8 @@ impl StatesWriter {
                 record.extend(run.snapshot.time.to_le_bytes());
             }
             let vectors = |vectors: &[DVec3]| vectors.iter().flat_map(vector_bytes).collect();
-            let memory = state.memory.model.iter().chain(&state.memory.constraints);
+            let memory = &state.memory;
+            let memory = memory.model.iter().chain(&memory.constraints).chain(&memory.contact);
             let memory: Vec<_> = memory.flat_map(|number| number.to_le_bytes()).collect();
             let rows: [Vec<u8>; 3] = [vectors(&state.position), vectors(&state.velocity), memory];
             for (digests, row) in stored.digests.iter_mut().zip(&rows) {

@@ -86,7 +86,7 @@ pub(super) fn length(metres: f64, extent: f64) -> String {
 /// A value of a diagnostic with its unit, of a body of a size (m).
 pub(super) fn value(diagnostic: Diagnostic, value: f64, extent: f64) -> String {
     match diagnostic {
-        Diagnostic::TurnedOver | Diagnostic::Broken => value.to_string(),
+        Diagnostic::TurnedOver | Diagnostic::Broken | Diagnostic::Crossings => value.to_string(),
         Diagnostic::VolumeRatio => ratio(value),
         Diagnostic::ShapeError => length(value, extent),
         _ => {

@@ -1,6 +1,7 @@
 //! From which step on bodies go through each other, where contact of surfaces does not keep them apart.
 
-use crate::reading::words::short;
+use super::RunFrame;
+use crate::reading::words::{list, several, short};
 use crate::scene::Scene;
 use crate::sim::{Contacts, Moment, Overlap, Side, State, Status, Surfaces, World};
 use glam::DVec3;
@@ -101,6 +102,21 @@ impl Watch {
         let message = format!("“{one}” and “{other}” go through each other from {time} s on in “{name}”");
         Some(format!("{message}: bodies do not collide"))
     }
+}
+
+/// The message about surfaces that cross each other in a frame of a run, though contact keeps them apart; `None` if none do.
+pub(crate) fn crossing(scene: &Scene, frame: &RunFrame) -> Option<String> {
+    let RunFrame { run, snapshot, .. } = frame;
+    let (of, count) = (&scene.runs[*run], snapshot.diagnostics.crossings);
+    if count.is_nan() || count == 0.0 {
+        return None;
+    }
+    let crossed = of.of.iter().zip(&snapshot.of_bodies).filter(|(_, own)| own.crossings > 0.0);
+    let names: Vec<_> = crossed.map(|(&body, _)| &scene.bodies[body].name).collect();
+    let (names, time) = (list(&names, "and", |name| format!("“{name}”")), short(snapshot.time));
+    let (shorter, pairs) = (short(of.step / 2.0), several(count as u64, "crossing"));
+    let step = format!("the step is too long for contact; try one of {shorter} s");
+    Some(format!("surfaces cross at {time} s in “{}”, of {names} ({pairs}): {step}", of.name))
 }
 
 /// The pairs of bodies among the `wanted` ones that overlap with nodes at given positions (m), in order. Bodies that touch do not overlap.

@@ -22,6 +22,7 @@ pub(crate) use history::TableRow;
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};
 use meetings::Watch;
+pub(crate) use meetings::crossing;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::io;
@@ -118,7 +119,7 @@ impl<'a> Runner<'a> {
     fn playing(mut self, recordings: &[Arc<Recorded>]) -> Option<Self> {
         let play = |(running, recording): (Running, &Arc<Recorded>)| {
             let State { position, memory, .. } = running.world.state();
-            let memory = memory.model.len() + memory.constraints.len();
+            let memory = memory.model.len() + memory.constraints.len() + memory.contact.len();
             if (recording.nodes, recording.memory) != (position.len(), Some(memory)) {
                 return None;
             }
@@ -159,6 +160,15 @@ impl<'a> Runner<'a> {
     /// Computes only these diagnostics in frames.
     pub(crate) fn with_diagnostics(mut self, wanted: &[Diagnostic]) -> Self {
         self.runs.iter_mut().for_each(|running| running.world.want(wanted));
+        self
+    }
+
+    /// Keeps what some diagnostics tell of contact, if they do, beside what the charts of the scene tell.
+    pub(crate) fn keeping_contact(mut self, wanted: &[Diagnostic]) -> Self {
+        let scene = self.scene;
+        if wanted.iter().any(|one| one.is_of_contact()) {
+            self.runs.iter_mut().for_each(|running| scene.keep_contact(&mut running.world));
+        }
         self
     }
 
@@ -358,7 +368,8 @@ impl Running {
         let (all, of_bodies) = world.diagnostics_by_body(if row.is_some() { Diagnostic::ALL } else { wanted });
         if let Some(rows) = row {
             let time = steps as f64 * self.step;
-            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone() });
+            let contact_forces = world.contact_forces().unwrap_or_default();
+            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone(), contact_forces });
         }
         if is_noted {
             self.note(scene, steps, (all, of_bodies));
@@ -428,7 +439,15 @@ impl Scene {
             }
         };
         world.show(self.view.colour.map(|scale| scale.field));
+        if self.keeps_contact() {
+            self.keep_contact(&mut world);
+        }
         world
+    }
+
+    /// Keeps the forces of contact, over the intervals between rows of `diagnostics.csv`, or else between frames.
+    fn keep_contact(&self, world: &mut World) {
+        world.keep_contact_forces(self.every.map_or(self.moment(1), Moment::at));
     }
 }
 

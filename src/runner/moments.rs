@@ -128,6 +128,7 @@ impl<'a> Taking<'a> {
             None => {
                 // Most sheets show more runs than there are threads.
                 let runner = Runner::among(usize::MAX, &sheet.scenes[of[0]], &[of[1]]).with_diagnostics(&wanted);
+                let runner = runner.keeping_contact(&[&sheet.charts[..], &wanted].concat());
                 parts.push(ShownRun { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
                 parts.len() - 1
             }

@@ -26,6 +26,11 @@ impl Scene {
         needed.then_some(&view.charts[..])
     }
 
+    /// Whether charts tell of contact, so that its forces are kept.
+    pub(crate) fn keeps_contact(&self) -> bool {
+        self.view.charts.iter().any(|chart| chart.is_of_contact())
+    }
+
     /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
     pub(super) fn check_charts(
         charts: &[Diagnostic],
@@ -67,6 +72,14 @@ impl Scene {
             Diagnostic::Broken => (
                 has(&|model, of| model.properties(&of.body).breakable.is_some()),
                 "only models with `breaks_at` break; give it, or plot another diagnostic, such as \"turned_over\"",
+            ),
+            Diagnostic::ContactForce | Diagnostic::ContactTorque => (
+                has(&|_, _| true) && (!self.obstacles.is_empty() || self.runs.iter().any(|run| run.of.len() > 1)),
+                "nothing is there to touch, or all is recorded; add an obstacle or a body, or plot another diagnostic, such as \"kinetic\"",
+            ),
+            Diagnostic::Crossings => (
+                has(&|_, _| true) && self.contacts.is_some(),
+                "with `rule = \"nodes\"` surfaces do not meet, and nothing is known of recordings; plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Residual => (
                 has(&has_residual),

@@ -89,6 +89,8 @@ pub struct Scene {
     pub runs: Vec<Run>,
     /// The obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
+    /// The name of each obstacle; its place in the file, such as `obstacle[0]`, of one without a name.
+    pub obstacle_names: Vec<String>,
     /// How surfaces meet, with bodies counted as in the scene; `None` if nodes meet obstacles and nothing else meets.
     pub contacts: Option<Contacts>,
     /// The view.

@@ -9,7 +9,8 @@ use serde_json::Value;
 use std::io::Read;
 
 const HEADS: &str = "run,body,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
-                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,global_rotations,broken,status";
+                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,global_rotations,broken,\
+                     contact_force_x,contact_force_y,contact_force_z,contact_torque_x,contact_torque_y,contact_torque_z,crossings,status";
 
 /// The rows of a table without its headings.
 fn rows(table: &str) -> Vec<Vec<&str>> {
@@ -37,7 +38,7 @@ fn diagnostics_of_each_run_and_frame() {
     assert!(rows.iter().all(|row| (row[13] == "nan") == (row[0] == "Mass-spring")), "{table}");
     let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
     assert!(rows.iter().all(|row| digits(row[3]) == 17 && digits(row[4]) == 17), "{table}");
-    assert!(rows.iter().all(|row| row[20] == "ok"));
+    assert!(rows.iter().all(|row| row.last() == Some(&"ok")));
     // The sum of all energies.
     let number = |text: &str| text.parse::<f64>().unwrap();
     let sum = |row: &[&str]| number(row[4]) + number(row[5]) + number(row[6]);
@@ -672,4 +673,52 @@ fn rows_between_frames_of_bodies_that_diverge() {
     let of_all = of_frames.iter().rfind(|row| row[1] == "all").expect("frames");
     assert_eq!(most[0], of_all[4].parse::<f64>().expect("a number"));
     assert!((most[1] - (end - 0.02)).abs() < 1e-9, "{most:?}");
+}
+
+/// With a chart of contact, the forces on each body are the change of its momentum but for gravity, whoever exerts them.
+#[test]
+fn forces_of_contact_are_columns() {
+    let place = Place::new();
+    let scene = |charts: &str| {
+        format!(
+            "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.2, frames_per_second = 20, every = 0.025, step = 0.001 }}\n\
+             view.charts = [{charts}]\n\
+             body = [{{ name = 'low', lattice = {{ cells = [2, 1, 2], side = 0.1 }}, density = 300.0, lowest = 0.004 }},\n\
+             {{ name = 'high', lattice = {{ cells = [2, 1, 2], side = 0.1 }}, density = 300.0, lowest = 0.12, offset = [0.03, 0, 0] }}]\n\
+             run = [{{ name = 'soft', model = {{ kind = 'shape-based', stiffness = 3e3 }} }}]\n\
+             obstacle = [{{ kind = 'floor', name = 'ground' }}, {{ kind = 'sphere', centre = [5, 0, 0], radius = 0.1 }}]\n"
+        )
+    };
+    place.write("told.toml", &scene("'contact_force'"));
+    place.write("untold.toml", &scene(""));
+    place.run("simulate told.toml -q").good();
+    place.run("simulate untold.toml -q").good();
+    let (told, untold) = (place.read("output/told/diagnostics.csv"), place.read("output/untold/diagnostics.csv"));
+    let heads: Vec<_> = told.lines().next().unwrap().split(',').collect();
+    let at = |name: &str| heads.iter().position(|head| *head == name).unwrap_or_else(|| panic!("{name} in {heads:?}"));
+    let first = at("contact_force_x");
+    let (rows, plain) = (rows(&told), rows(&untold));
+    assert_eq!(rows.len(), plain.len());
+    assert!(rows.iter().zip(&plain).all(|(told, untold)| told[..first] == untold[..first]), "the same motion");
+    let unknown = ["nan", "nan", "nan", "nan", "nan", "nan", "0.0000000000000000e0", "ok"];
+    assert!(plain.iter().all(|row| row[first..] == unknown), "{:?}", plain[0]);
+    let number = |row: &[&str], name: &str| row[at(name)].parse::<f64>().unwrap();
+    let mut most: f64 = 0.0;
+    for body in ["low", "high", "all"] {
+        let own: Vec<_> = rows.iter().filter(|row| row[1] == body).collect();
+        assert!(number(own[0], "contact_force_y").is_nan() && number(own[0], "force of ground_y").is_nan());
+        let mass = if body == "all" { 2.4 } else { 1.2 };
+        for two in own.windows(2) {
+            let time = number(two[1], "time") - number(two[0], "time");
+            let change = (number(two[1], "momentum_y") - number(two[0], "momentum_y")) / time + 9.8 * mass;
+            let whole = number(two[1], "contact_force_y");
+            let of = |name: &str| number(two[1], &format!("force of {name}_y"));
+            assert!((change - whole).abs() < 1e-9 && (0.024..0.026).contains(&time), "{body}: {change} {whole}");
+            let by_each = of("ground") + of("obstacle[1]") + of("low") + of("high");
+            assert!((by_each - whole).abs() < 1e-9, "{body}: {by_each} {whole}");
+            assert_eq!(number(two[1], "crossings"), 0.0);
+            most = most.max(of("low"));
+        }
+    }
+    assert!(most > 5.0, "they met: {most}");
 }

@@ -34,7 +34,7 @@ pub struct Recorded {
     pub(in crate::scene) is_flat: bool,
     pub(super) axes: Axes,
     pub(super) has_velocities: bool,
-    /// The length of the memory of models and constraints in each moment, if it is recorded.
+    /// The length of the memory of models, constraints and contact in each moment, if it is recorded.
     pub(crate) memory: Option<usize>,
     /// Where the run diverged, if it is known. Its last moment is then the last finite state.
     pub(super) divergence: Option<Divergence>,
@@ -184,6 +184,7 @@ impl Player {
                     .model
                     .iter_mut()
                     .chain(&mut memory.constraints)
+                    .chain(&mut memory.contact)
                     .zip(&mut numbers)
                     .for_each(|(to, from)| *to = from);
             }

@@ -112,6 +112,7 @@ impl<'a> Typed<'a> {
             bodies: physics.bodies?,
             runs: physics.runs?,
             obstacles: physics.obstacles?,
+            obstacle_names: obstacles::names(file),
             contacts: physics.contacts,
             view: view?,
             warnings: Vec::new(),

@@ -31,6 +31,12 @@ pub(super) fn resolve(
     (obstacles.len() == typed.len()).then_some(obstacles)
 }
 
+/// The name of each obstacle, or its place in the file.
+pub(super) fn names(file: &SceneFile) -> Vec<String> {
+    let given = file.obstacle.iter().map(|one| one.as_ref().and_then(|one| one.name.clone()));
+    given.enumerate().map(|(at, name)| name.unwrap_or_else(|| format!("obstacle[{at}]"))).collect()
+}
+
 fn one(
     typed: &ObstacleFile,
     dimension: Dimension,
