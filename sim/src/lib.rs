@@ -68,8 +68,8 @@ pub use assembly::Assembly;
 pub use body::{Body, BodyError, NewBody};
 pub use carried::{Carried, Weights};
 pub use contact::{
-    BodyContact, Contact, ContactForce, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed, Shape, Side,
-    Surfaces,
+    BodyContact, Contact, ContactForce, ContactPoint, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed,
+    Shape, Side, Surfaces,
 };
 pub use crew::Crew;
 pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};

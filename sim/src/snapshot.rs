@@ -1,6 +1,6 @@
 //! A [`Snapshot`] of a run: the view of a simulation for drawing, diagnostics and files.
 
-use super::contact::ContactForce;
+use super::contact::{ContactForce, ContactPoint};
 use super::diagnostics::Diagnostics;
 use super::integrate::Unsolved;
 use super::placement::Placement;
@@ -38,6 +38,8 @@ pub struct Snapshot {
     /// The mean forces of contact in the last interval that has ended; empty before, and in a world that
     /// [is not asked for them](super::World::keep_contact_forces).
     pub contact_forces: Vec<ContactForce>,
+    /// Where bodies touch now, in a world that is asked for the forces.
+    pub contact_points: Vec<ContactPoint>,
     /// Whether the run has diverged.
     pub status: Status,
     /// The steps until then that an implicit method has not solved; `None` if there are none.

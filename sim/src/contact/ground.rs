@@ -2,6 +2,7 @@
 //!
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
+use super::points::{ContactPoint, SLACK};
 use super::rule::{Law, Moved, Term, Touch};
 use super::stage::End;
 use super::surface::Surface;
@@ -167,6 +168,17 @@ impl Grounds {
     /// The way (m) for which surely nothing touches; `None` if that is not known.
     pub(super) fn clear(&self, surfaces: &[Surface], position: &[DVec3]) -> Option<f64> {
         self.all.iter().try_fold(f64::INFINITY, |least, ground| Some(least.min(ground.clear(surfaces, position)?)))
+    }
+
+    /// Adds the points of surfaces that touch half-spaces at a time (s), with positions of all nodes (m).
+    pub(super) fn points(&self, surfaces: &[Surface], position: &[DVec3], time: f64, found: &mut Vec<ContactPoint>) {
+        for ground in &self.all {
+            let (plane, points, from) =
+                (ground.plane(time), &surfaces[ground.body].points, Side::Obstacle(ground.number));
+            let places = (0..points.len()).map(|point| points.place(point, position));
+            let touching = places.filter(|&at| plane.above(at) < ground.law.gap * (1.0 + SLACK));
+            found.extend(touching.map(|at| ContactPoint { from, on: ground.body, at }));
+        }
     }
 
     /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points.

@@ -16,6 +16,7 @@ mod inside;
 mod obstacle;
 mod overlap;
 mod pair;
+mod points;
 #[cfg(test)]
 mod queries;
 mod rule;
@@ -32,6 +33,7 @@ pub(crate) use impulses::{Felt, Impulses};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
 pub use overlap::{Overlap, Surfaces};
+pub use points::ContactPoint;
 pub(crate) use rule::Timing;
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;

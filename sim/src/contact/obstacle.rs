@@ -67,6 +67,11 @@ impl Obstacle {
         Some((normal, normal.dot(pose.apply(pivot, pivot))))
     }
 
+    /// The depth of a point below its surface at a time (s), negative above it (m).
+    pub(crate) fn depth(&self, point: DVec3, time: f64) -> f64 {
+        self.shape.surface(self.pose(time).undo(self.pivot, point)).depth
+    }
+
     /// Unit normal and distance from the origin (m) of a half-space at a time (s), a floor or a plate; `None` for other obstacles.
     pub(super) fn half_space(&self, time: f64) -> Option<(DVec3, f64)> {
         let (Shape::Floor { normal, .. } | Shape::Plate { normal, .. }) = self.shape else { return None };

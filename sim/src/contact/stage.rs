@@ -21,16 +21,16 @@ use std::sync::{Mutex, PoisonError};
 pub(crate) struct Stage {
     contacts: Contacts,
     /// Of the bodies, then of obstacles with an extent.
-    surfaces: Vec<Surface>,
+    pub(super) surfaces: Vec<Surface>,
     bodies: usize,
     obstacles: Vec<Solid>,
     /// Positions of all nodes at rest (m).
-    rest: Vec<DVec3>,
+    pub(super) rest: Vec<DVec3>,
     inverse_mass: Vec<f64>,
     /// The nodes of the surfaces of bodies, each once.
     nodes: Vec<u32>,
     known: Mutex<Known>,
-    grounds: Mutex<Grounds>,
+    pub(super) grounds: Mutex<Grounds>,
 }
 
 /// An obstacle with an extent, and its points at the start (m).
@@ -151,7 +151,7 @@ impl Stage {
         (has_grounds || meets_itself || stage.surfaces.len() > 1).then_some(stage)
     }
 
-    fn side(&self, surface: usize) -> Side {
+    pub(super) fn side(&self, surface: usize) -> Side {
         match surface.checked_sub(self.bodies) {
             None => Side::Body(surface),
             Some(solid) => Side::Obstacle(self.obstacles[solid].number),
@@ -280,7 +280,7 @@ impl Stage {
     }
 
     /// The first node of a surface; of obstacles the number after those of nodes.
-    fn first_node(&self, surface: usize) -> u32 {
+    pub(super) fn first_node(&self, surface: usize) -> u32 {
         let nodes = self.surfaces.get(..self.bodies).and_then(|bodies| bodies.get(surface)).map(|body| &body.nodes);
         nodes.and_then(|nodes| nodes.first().copied()).unwrap_or(self.rest.len() as u32)
     }
@@ -296,7 +296,7 @@ impl Stage {
     }
 
     /// Writes where the points of obstacles are at the start and at the end of a step, and their velocities in it.
-    fn place_obstacles(&self, interval: Interval, [start, end, speed]: &mut [Vec<DVec3>; 3]) {
+    pub(super) fn place_obstacles(&self, interval: Interval, [start, end, speed]: &mut [Vec<DVec3>; 3]) {
         [&mut *start, &mut *end, &mut *speed].into_iter().for_each(Vec::clear);
         for Solid { obstacle, points, .. } in &self.obstacles {
             let [from, to] = [interval.begin, interval.end].map(|time| obstacle.pose(time));
@@ -336,7 +336,7 @@ impl Stage {
     }
 
     /// Chooses the pairs of surfaces that are near each other, and returns the way (m) of any two until others may meet.
-    fn choose(&self, at: &Places<'_>, ahead: f64, pairs: &mut Vec<Pair>) -> f64 {
+    pub(super) fn choose(&self, at: &Places<'_>, ahead: f64, pairs: &mut Vec<Pair>) -> f64 {
         let extents: Vec<_> = self.surfaces.iter().map(|surface| Extent::of(surface, at)).collect();
         let bodies = &extents[..self.bodies];
         let size = bodies.iter().map(|extent| extent.size().max_element()).sum::<f64>() / self.bodies as f64;

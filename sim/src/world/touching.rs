@@ -1,7 +1,7 @@
 //! Forces of contact, for those who ask for them.
 
 use super::World;
-use crate::contact::{ContactForce, Impulses, Side};
+use crate::contact::{ContactForce, ContactPoint, Impulses, Side};
 use crate::diagnostics::Touching;
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::state::{Runaway, State};
@@ -43,6 +43,26 @@ impl World {
     /// before the first end, and if they are [not kept](Self::keep_contact_forces).
     pub fn contact_forces(&self) -> Option<Vec<ContactForce>> {
         self.system.impulses.as_ref()?.forces(&self.state.memory.contact)
+    }
+
+    /// Where bodies touch obstacles, other bodies and themselves in the present state, by positions alone. Nodes touch an obstacle at a
+    /// thousandth of the size of the body, surfaces at 1.1 times the distance that is kept.
+    pub fn contact_points(&self) -> Vec<ContactPoint> {
+        /// Relative to the size of a body.
+        const NEAR: f64 = 1e-3;
+        let System { parts, contact, .. } = &self.system;
+        let (position, time) = (&self.state.position, self.system.interval(self.state.steps).begin);
+        let (met, apart) = (self.system.met_by_nodes(), self.system.apart());
+        let mut found = Vec::new();
+        for (on, part) in parts.iter().enumerate().filter(|(_, part)| !apart.contains(&part.nodes)) {
+            let near = NEAR * part.body.extent();
+            for &(number, obstacle) in &met {
+                let own = position[part.nodes.clone()].iter().filter(|&&at| obstacle.depth(at, time) > -near);
+                found.extend(own.map(|&at| ContactPoint { from: Side::Obstacle(number), on, at }));
+            }
+        }
+        found.extend(contact.iter().flat_map(|stage| stage.points(position, time)));
+        found
     }
 
     /// The numbers of pairs of facets that cross each other in the present state, of surfaces that meet: of each two bodies, a body and an

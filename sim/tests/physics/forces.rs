@@ -3,8 +3,8 @@
 use super::surfaces::{Noise, Placed, SIDE, block, by, moments, still, with_contacts};
 use glam::{DQuat, DVec3};
 use localshape_sim::{
-    Body, ContactForce, Contacts, Crew, Grip, Integrator, Kernel, Moment, Motion, Obstacle, Offset, Shape, Side, State,
-    Status, Surroundings, World,
+    Body, BodyContact, ContactForce, ContactPoint, Contacts, Crew, Grip, Integrator, Kernel, Moment, Motion, Obstacle,
+    Offset, Shape, Side, State, Status, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -184,6 +184,10 @@ fn the_floor_carries_the_weight() {
         let mut world = by(Integrator::VelocityVerlet, Kernel::Fast, &[(Arc::clone(&body), placed)], 3e4, 0.02, around);
         world.keep_contact_forces(Moment::at(2.0));
         world.advance((4.0 / (0.02 * std::f64::consts::TAU / 3e4f64.sqrt())) as u64 + 2);
+        let points = world.contact_points();
+        let is_below =
+            |point: &ContactPoint| (point.from, point.on) == (Side::Obstacle(0), 0) && point.at.y < -SIDE * 0.98;
+        assert!(points.len() == 16 && points.iter().all(is_below), "{points:?}");
         let mass: f64 = body.mass().iter().sum();
         let (force, momentum) = (world.diagnostics().contact_force, moments(&world, body.mass()).0);
         let expected = if is_held { DVec3::ZERO } else { DVec3::Y * (9.8 * mass) };
@@ -191,5 +195,23 @@ fn the_floor_carries_the_weight() {
             (force - expected).length() <= 1e-2 * expected.length(),
             "{has_surfaces} {is_held}: {force} {momentum}"
         );
+    }
+}
+
+/// Two equal faces above each other touch at their 16 nodes and 9 middles, up to 1.1 times the distance that is kept.
+#[test]
+fn points_of_contact_are_where_surfaces_touch() {
+    const GAP: f64 = 0.002;
+    for (times, count) in [(1.0, 25), (1.09, 25), (1.11, 0)] {
+        let body = block([3, 2, 3]);
+        let placed = [0.0, 2.0 * SIDE + GAP * times].map(|height| (Arc::clone(&body), still(DVec3::Y * height)));
+        let thin = BodyContact { thickness: Some(GAP / 2.0), ..BodyContact::default() };
+        let contacts = Contacts { bodies: vec![thin; 2], ..Contacts::default() };
+        let around = Surroundings { contacts: Some(contacts), ..Surroundings::default() };
+        let world = by(Integrator::SemiImplicitEuler, Kernel::Fast, &placed, 1e3, 0.02, around);
+        let points = world.contact_points();
+        let is_between =
+            |point: &ContactPoint| (point.from, point.on) == (Side::Body(1), 0) && (point.at.y - SIDE).abs() < 1e-9;
+        assert!(points.len() == count && points.iter().all(is_between), "{times}: {points:?}");
     }
 }
