@@ -40,6 +40,8 @@ struct Solid {
     number: usize,
     obstacle: Obstacle,
     points: Vec<DVec3>,
+    /// The greatest speed of its points (m/s).
+    greatest_speed: f64,
 }
 
 /// What is known of the last step.
@@ -60,6 +62,9 @@ struct Known {
     slowed: Vec<DVec3>,
     /// Whether each node was changed in this step.
     is_changed: Vec<bool>,
+    /// Boxes around the surfaces, and the order in which they begin, while bodies are asked whether they can go alone.
+    extents: Vec<Extent>,
+    order: Vec<usize>,
 }
 
 /// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
@@ -132,7 +137,9 @@ impl Stage {
             let Some((surface, points)) = obstacle.shape.surface_of(dimension, first) else { continue };
             first += points.len() as u32;
             surfaces.push(surface);
-            solids.push(Solid { number, obstacle: obstacle.clone(), points });
+            let far = points.iter().fold(0.0, |most: f64, point| most.max(point.distance(obstacle.pivot)));
+            let greatest_speed = obstacle.motion.greatest_speed(far);
+            solids.push(Solid { number, obstacle: obstacle.clone(), points, greatest_speed });
         }
         let grounds = Grounds::new(parts, &surfaces, obstacles);
         let has_grounds = !grounds.is_empty();
@@ -395,17 +402,21 @@ impl Stage {
             return None;
         }
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        self.place_obstacles(interval, &mut known.obstacles);
-        let places = Places { nodes: at.position, obstacles: &known.obstacles[0] };
-        let extents: Vec<_> = self.surfaces.iter().map(|surface| Extent::of(surface, &places)).collect();
+        let Known { obstacles, extents, order, .. } = &mut *known;
+        self.place_obstacles(interval, obstacles);
+        let places = Places { nodes: at.position, obstacles: &obstacles[0] };
+        extents.clear();
+        extents.extend(self.surfaces.iter().map(|surface| Extent::of(surface, &places)));
         let speeds = self.nodes.iter().map(|&node| at.velocity[node as usize].length_squared());
         let fastest = speeds.fold(0.0, f64::max).sqrt();
-        let speeds: Vec<f64> = self.obstacles.iter().map(|solid| solid.greatest_speed()).collect();
-        let quickest = speeds.iter().copied().fold(0.0, f64::max);
+        let quickest = self.obstacles.iter().map(|solid| solid.greatest_speed).fold(0.0, f64::max);
         let widest = self.widest_gap();
         let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN);
-        let mut order: Vec<usize> = (0..extents.len()).collect();
-        order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
+        order.clear();
+        order.extend(0..extents.len());
+        order.sort_unstable_by(|&one, &other| {
+            extents[one].begins().total_cmp(&extents[other].begins()).then(one.cmp(&other))
+        });
         let clear = self.grounds.lock().unwrap_or_else(PoisonError::into_inner).clear(&self.surfaces, at.position)?;
         let mut speed = bearable(clear, 0.0);
         for (at, &one) in order.iter().enumerate() {
@@ -416,18 +427,11 @@ impl Stage {
                     break;
                 }
                 let Some(Law { gap, .. }) = self.law(one.min(other), one.max(other)) else { continue };
-                let own = one.max(other).checked_sub(self.bodies).map_or(0.0, |solid| speeds[solid]);
+                let own =
+                    one.max(other).checked_sub(self.bodies).map_or(0.0, |solid| self.obstacles[solid].greatest_speed);
                 speed = speed.min(bearable(extents[one].distance(&extents[other]) - gap, own));
             }
         }
         (speed > 1.1 * fastest).then_some((most, speed))
-    }
-}
-
-impl Solid {
-    /// The greatest speed of its points (m/s).
-    fn greatest_speed(&self) -> f64 {
-        let far = self.points.iter().fold(0.0, |most: f64, point| most.max(point.distance(self.obstacle.pivot)));
-        self.obstacle.motion.greatest_speed(far)
     }
 }

@@ -224,6 +224,8 @@ pub(crate) struct Rollback {
     kept: Option<u64>,
     /// The nodes of all parts before and after contact.
     buffers: [State; 2],
+    /// The nodes that contact has changed.
+    changed: Vec<u32>,
 }
 
 impl Rollback {
@@ -234,7 +236,7 @@ impl Rollback {
     pub(crate) fn new(parts: Vec<PartStepper>, scheme: Scheme) -> Self {
         let count = parts.last().map_or(0, |part| part.nodes.end);
         let buffers = [(); 2].map(|()| State::at_rest(vec![DVec3::ZERO; count]));
-        Self { parts, scheme, steps: 0, kept: None, buffers }
+        Self { parts, scheme, steps: 0, kept: None, buffers, changed: Vec::new() }
     }
 
     /// Reads a state after `steps` steps.
@@ -357,7 +359,7 @@ impl Rollback {
         let mut buffers = std::mem::take(&mut self.buffers);
         let [before, after] = &mut buffers;
         let all: Vec<u32> = around.push.iter().flat_map(|_| 0..count as u32).collect();
-        let mut changed = Vec::new();
+        let mut changed = std::mem::take(&mut self.changed);
         let (mut begun, mut is_read, mut forces) = (None, false, around.forces.to_vec());
         let mut lost = None;
         for pass in 0..outline.len() {
@@ -389,7 +391,7 @@ impl Rollback {
                 is_read = false;
             }
         }
-        self.buffers = buffers;
+        (self.buffers, self.changed) = (buffers, changed);
         lost
     }
 
@@ -400,16 +402,17 @@ impl Rollback {
         /// The least number of nodes for each thread.
         const LEAST: usize = 2000;
         let (all, threads) = (self.parts.last()?.nodes.end, crew.threads());
-        let is_divided = |part: &&mut PartStepper| {
+        let is_divided = |part: &PartStepper| {
             let nodes = part.nodes.len().max(1);
             (nodes / LEAST).clamp(1, threads) >= (all / nodes).min(threads)
         };
-        let (divided, whole): (Vec<_>, Vec<_>) = self.parts.iter_mut().partition(is_divided);
-        let first = divided.into_iter().filter_map(|part| advance(part, crew)).min();
-        if whole.is_empty() {
+        let divided = self.parts.iter_mut().filter(|part| is_divided(part));
+        let first = divided.filter_map(|part| advance(part, crew)).min();
+        if self.parts.iter().all(is_divided) {
             return first;
         }
-        let (queue, found) = (Mutex::new(whole.into_iter()), Mutex::new(first));
+        let whole = self.parts.iter_mut().filter(|part| !is_divided(part));
+        let (queue, found) = (Mutex::new(whole), Mutex::new(first));
         crew.run(&|_| {
             let alone = Crew::new(1);
             let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();

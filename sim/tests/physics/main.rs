@@ -1,5 +1,6 @@
 //! The physics compared with the paper and with closed forms.
 
+mod allocations;
 mod body;
 mod breaking;
 mod carried;
