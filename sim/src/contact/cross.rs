@@ -32,7 +32,7 @@ pub(super) fn near_facets([one, other]: [Placed<'_>; 2], reach: f64) -> Vec<[u32
         near((0..placed.surface.facets.len() as u32).map(|facet| (facet, extent(facet))), &common)
     });
     let mut found = Vec::new();
-    sweep([&mine, &theirs], reach, common.longest_axis(), |pair| found.push(pair));
+    sweep([&mine, &theirs], reach, common.longest_axes(), |pair| found.push(pair));
     found.sort_unstable();
     found
 }

@@ -43,9 +43,11 @@ impl Extent {
         self.high - self.low
     }
 
-    pub(super) fn longest_axis(&self) -> usize {
-        let size = self.size();
-        (1..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
+    /// Its two longest axes, the longest first.
+    pub(super) fn longest_axes(&self) -> [usize; 2] {
+        let (size, mut axes) = (self.size(), [0, 1, 2]);
+        axes.sort_by(|&one, &other| size[other].total_cmp(&size[one]));
+        [axes[0], axes[1]]
     }
 
     pub(super) fn middle(&self) -> DVec3 {
@@ -71,15 +73,32 @@ pub(super) fn near(features: impl Iterator<Item = (u32, Extent)>, common: &Exten
     features.filter(|(_, extent)| extent.meets(common)).collect()
 }
 
-/// Calls `found` with the features whose boxes are nearer than a reach (m) along each axis, by a sweep along one.
-pub(super) fn sweep([one, other]: [&Vec<(u32, Extent)>; 2], reach: f64, axis: usize, mut found: impl FnMut([u32; 2])) {
+/// Calls `found` with the features whose boxes are nearer than a reach (m) along each axis, by a sweep along one axis in rows across it.
+pub(super) fn sweep(
+    [one, other]: [&Vec<(u32, Extent)>; 2],
+    reach: f64,
+    [axis, across]: [usize; 2],
+    mut found: impl FnMut([u32; 2]),
+) {
+    // The last row has all that is beyond.
+    let rows = (other.len() / 16).clamp(1, 256);
+    let widest = |axis: usize| other.iter().map(|(_, extent)| extent.high[axis] - extent.low[axis]).fold(0.0, f64::max);
+    let (long, wide) = (widest(axis), widest(across));
+    let least = other.iter().map(|(_, extent)| extent.low[across]).fold(f64::INFINITY, f64::min);
+    let row = |at: f64| ((at - least) / (wide + 2.0 * reach)).clamp(0.0, (rows - 1) as f64) as usize;
+    let of = |(_, extent): &(u32, Extent)| row(extent.low[across]);
     let mut sorted = other.clone();
-    sorted.sort_by(|a, b| a.1.low[axis].total_cmp(&b.1.low[axis]));
-    let widest = sorted.iter().map(|(_, extent)| extent.high[axis] - extent.low[axis]).fold(0.0, f64::max);
+    sorted.sort_by(|a, b| of(a).cmp(&of(b)).then(a.1.low[axis].total_cmp(&b.1.low[axis])));
+    let mut begins = vec![0; rows + 1];
+    sorted.iter().for_each(|one| begins[of(one) + 1] += 1);
+    (0..rows).for_each(|row| begins[row + 1] += begins[row]);
     for (first, extent) in one {
         let grown = extent.grown(reach);
-        let from = sorted.partition_point(|(_, other)| other.low[axis] < grown.low[axis] - widest);
-        let beside = sorted[from..].iter().take_while(|(_, other)| other.low[axis] <= grown.high[axis]);
-        beside.filter(|(_, other)| grown.meets(other)).for_each(|(second, _)| found([*first, *second]));
+        for row in row(grown.low[across] - wide)..=row(grown.high[across]) {
+            let sorted = &sorted[begins[row]..begins[row + 1]];
+            let from = sorted.partition_point(|(_, other)| other.low[axis] < grown.low[axis] - long);
+            let beside = sorted[from..].iter().take_while(|(_, other)| other.low[axis] <= grown.high[axis]);
+            beside.filter(|(_, other)| grown.meets(other)).for_each(|(second, _)| found([*first, *second]));
+        }
     }
 }

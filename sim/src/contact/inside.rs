@@ -22,7 +22,7 @@ pub(super) fn inside(points: &[DVec3], other: Placed<'_>) -> Vec<u32> {
     let corners = |facet: u32| other.used(facet).iter().map(|&corner| other.at[corner as usize]);
     let facets = other.surface.bounding.iter().map(|&facet| (facet, Extent::around(corners(facet)))).collect();
     let mut turns = vec![0; points.len()];
-    sweep([&rays, &facets], 0.0, 1, |[number, facet]| {
+    sweep([&rays, &facets], 0.0, [1, 2], |[number, facet]| {
         let point = points[number as usize];
         let corners: Vec<_> = corners(facet).collect();
         turns[number as usize] += match corners[..] {

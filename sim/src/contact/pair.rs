@@ -105,7 +105,7 @@ impl Pair {
             [near(points, &common), near(facets, &common), near(edges, &common)]
         };
         let [of_one, of_other] = [lists(one), lists(other)];
-        let axis = common.longest_axis();
+        let axes = common.longest_axes();
         for (at, kind) in Kind::ALL.into_iter().enumerate() {
             let sides = match kind {
                 Kind::Point { of: 0 } => [&of_one[0], &of_other[1]],
@@ -115,7 +115,7 @@ impl Pair {
                 Kind::Edges => [&of_one[2], &of_other[2]],
             };
             let mut found = Vec::new();
-            sweep(sides, reach, axis, |features| found.push(features));
+            sweep(sides, reach, axes, |features| found.push(features));
             if self.of[0] == self.of[1] {
                 let mut at = Shown::default();
                 at.place(one.surface, &seen.rest);
@@ -162,11 +162,11 @@ fn is_apart_at_rest(rest: Placed<'_>, kind: Kind, [first, second]: [u32; 2], far
         return false;
     }
     let Surface { points, facets, edges, .. } = rest.surface;
-    let nodes = |of: &[u32]| of.iter().flat_map(|&point| points.of(point as usize).0).copied().collect::<Vec<_>>();
     let (mine, theirs) = match kind {
-        Kind::Edges => (nodes(&edges[first as usize]), nodes(&edges[second as usize])),
-        Kind::Point { .. } => (nodes(&[first]), nodes(facets[second as usize].used())),
+        Kind::Edges => (&edges[first as usize][..], &edges[second as usize][..]),
+        Kind::Point { .. } => (std::slice::from_ref(&first), facets[second as usize].used()),
     };
-    let is_joined = mine.iter().any(|node| theirs.contains(node));
+    let nodes = |of| <[u32]>::iter(of).flat_map(|&point| points.of(point as usize).0);
+    let is_joined = nodes(mine).any(|node| nodes(theirs).any(|other| node == other));
     !is_joined && kind.closest([rest; 2], true, [first, second], f64::INFINITY).way.length() > far
 }
