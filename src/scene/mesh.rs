@@ -13,6 +13,8 @@ use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
 use localshape_mesh::{self as mesh, Cage, Flaws, Format, Mesh, ReadError};
 use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// The endings of mesh files.
@@ -45,9 +47,9 @@ impl MeshFile {
         let ending = ending(path);
         let Some(format) = Format::of(&ending) else {
             let (found, help) = match &*ending {
-                "" => ("has no ending".to_owned(), None),
+                "" => ("has no ending".to_owned(), inside(&bytes)),
                 "npz" => ("is a NumPy archive".to_owned(), Some("write `file` in place of `mesh`".to_owned())),
-                _ => (format!("is a .{ending} file"), other(&ending)),
+                _ => (format!("is a .{ending} file"), inside(&bytes).or_else(|| other(&ending))),
             };
             return Err((format!("{found}; {expected}"), help));
         };
@@ -71,10 +73,24 @@ impl MeshFile {
     }
 }
 
-/// Whether a file has the ending of a mesh, of one that is not read, too.
+/// Whether a file has the ending of a mesh, of one that is not read, too, or another ending and the content of a mesh.
 pub(crate) fn is_mesh(path: &Path) -> bool {
     let ending = ending(path);
-    Format::of(&ending).is_some() || mesh::converter(&ending).is_some()
+    if Format::of(&ending).is_some() || mesh::converter(&ending).is_some() {
+        return true;
+    }
+    let mut head = Vec::new();
+    // Reading a pipe would take what is in it.
+    let file = (ending != "toml" && path.is_file()).then(|| File::open(path).ok()).flatten();
+    let is_read = file.is_some_and(|file| file.take(1024).read_to_end(&mut head).is_ok());
+    // JSON that says nothing else is no mesh.
+    is_read && Format::within(&head).is_some_and(|format| format != Format::Gltf || head.starts_with(b"glTF"))
+}
+
+/// The remedy for a file with the content of a mesh and another ending.
+fn inside(bytes: &[u8]) -> Option<String> {
+    let ending = Format::within(bytes)?.endings()[0];
+    Some(format!("by its content it is a .{ending} file: name it so"))
 }
 
 /// The remedy for a file with an ending that is not read.

@@ -483,6 +483,10 @@ impl Cells {
         }
         if triangles.is_empty() {
             let points = self.points.len();
+            if points == 0 {
+                let help = "write it again with the object in it: some programs export what is selected alone";
+                return Err(ReadError::new("has no points, faces or cells", help));
+            }
             let points = if points == 1 { "1 point".to_owned() } else { format!("{points} points") };
             let message = match self.chosen(|kind| kind == CellKind::Line).count() {
                 0 => format!("has {points}, but neither faces nor cells"),

@@ -31,6 +31,16 @@ pub(super) fn no_beginning(bytes: &[u8], format: Format, expected: &str) -> Read
     ReadError::new(message, "check that the ending of its name is that of its format")
 }
 
+impl Format {
+    /// The format whose files begin with these bytes, if the beginning says.
+    pub fn within(bytes: &[u8]) -> Option<Self> {
+        match found(bytes) {
+            Some(Found::Format(format)) => Some(format),
+            _ => None,
+        }
+    }
+}
+
 /// A kind of file.
 enum Found {
     Format(Format),
@@ -80,6 +90,18 @@ fn found(bytes: &[u8]) -> Option<Found> {
         () if head.starts_with(b"BLENDER") => Other("a Blender file", converter("blend").unwrap_or(OTHER)),
         () if begins(b"iso-10303") => Other("a STEP file", converter("step").unwrap_or(OTHER)),
         () if begins(b"version https://git-lfs") => Other("a pointer of Git LFS", "run `git lfs pull`"),
+        () if is_obj(text) => Found::Format(Format::Obj),
         () => return None,
     })
+}
+
+/// Whether a text has a point as OBJ files do, `v` with three numbers, before anything that is no name, material or comment.
+fn is_obj(text: &[u8]) -> bool {
+    let lines = text.split(|&byte| byte == b'\n' || byte == b'\r').map(|line| line.trim_ascii());
+    let mut lines = lines.filter(|line| !line.is_empty() && line[0] != b'#');
+    let first =
+        lines.find(|line| !["mtllib ", "usemtl ", "o ", "g "].iter().any(|word| line.starts_with(word.as_bytes())));
+    let words = first.and_then(|line| std::str::from_utf8(line).ok()).unwrap_or_default();
+    let mut words = words.split_whitespace();
+    words.next() == Some("v") && words.take(3).filter(|word| word.parse::<f64>().is_ok()).count() == 3
 }

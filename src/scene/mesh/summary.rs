@@ -176,7 +176,8 @@ impl MeshSummary {
                 FillSummary { with, side, elements: 0, nodes: 0, parts: 0, error: Some(error) }
             }
         });
-        let told = left(&flaws, closed).into_iter().chain(of_cage.into_iter().flatten());
+        // Without any elements the fills say what is wrong.
+        let told = left(&flaws, closed).filter(|_| of_cage.is_some()).into_iter().chain(of_cage.into_iter().flatten());
         let content = Content::Surface(SurfaceSummary {
             triangles: surface.triangles.len(),
             area,

@@ -1,7 +1,7 @@
 //! The structure of a glTF file, validated.
 
-use super::super::ReadError;
 use super::super::source::{CUT, DAMAGED, quoted};
+use super::super::{Format, ReadError, content};
 use gltf::Document;
 use gltf::binary::Glb;
 use gltf::json::deserialize::{from_slice, from_value};
@@ -31,7 +31,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
         let Glb { json, bin, .. } = Glb::from_slice(bytes).map_err(|error| no(error.to_string()))?;
         (json, bin)
     } else {
-        (Cow::Borrowed(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)), None)
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        if !text.trim_ascii_start().starts_with(b"{") {
+            return Err(content::no_beginning(bytes, Format::Gltf, "`{` or `glTF`"));
+        }
+        (Cow::Borrowed(text), None)
     };
     let mut value: Value = from_slice(&text).map_err(|error| no(error.to_string()))?;
     if is_old(&value) {

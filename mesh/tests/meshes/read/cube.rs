@@ -198,6 +198,15 @@ fn refusals_say_where_and_what_to_do() {
             "solid a\nfacet normal",
             "has the content of an STL file, but the ending of a PLY file (name it `.stl`)".to_owned(),
         ),
+        // What the most common program for drawing writes, under another ending.
+        (
+            Stl,
+            "# made elsewhere\nmtllib cube.mtl\no cube\nv 0 0 0\nv 1 0 0\n",
+            "has the content of an OBJ file, but the ending of an STL file (name it `.obj`)".to_owned(),
+        ),
+        (Ply, "v 0 0 0.5e1\r\nv 1 0 0", "has the content of an OBJ file, but the ending of a PLY file".to_owned()),
+        (Gltf, "what\n", "begins with `what`; expected `{` or `glTF`, as a glTF file does (check".to_owned()),
+        (Obj, "# empty\n", "has no points, faces or cells (write it again with the object".to_owned()),
         (Vtu, "{}", "has the content of a glTF file, but the ending of a VTU file (name it `.gltf`)".to_owned()),
         (Gltf, "\u{1f}\u{fffd}", String::new()),
     ] {
