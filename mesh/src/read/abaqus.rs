@@ -223,6 +223,7 @@ impl Reader<'_, '_> {
             last = line;
             if let Some(number) = tag.filter(|_| found.len() == kind.nodes) {
                 self.tags[ELEMENTS].push(number, self.builder.cells.kinds.len() as u32);
+                self.builder.is_curved |= kind.nodes > kind.corners;
                 self.builder.around(kind.cell, &found[..kind.corners])?;
                 tag = None;
                 found.clear();
@@ -296,6 +297,11 @@ impl Reader<'_, '_> {
         }
         if self.left_out > 0 {
             let note = format!("has sets of its assembly without `INSTANCE`, which are not read: {}", self.left_out);
+            self.builder.cells.notes.push(note);
+        }
+        let thin = self.builder.cells.kinds.iter().filter(|kind| !kind.is_solid()).count();
+        if (1..self.builder.cells.kinds.len()).contains(&thin) {
+            let note = format!("has lines and faces beside its solids, which are left out: {thin}");
             self.builder.cells.notes.push(note);
         }
         let [nodes, elements] = self.sets;

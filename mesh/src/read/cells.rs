@@ -45,7 +45,7 @@ impl CellKind {
         })
     }
 
-    fn is_solid(self) -> bool {
+    pub(super) fn is_solid(self) -> bool {
         self.element().is_some()
     }
 
@@ -113,6 +113,8 @@ pub(super) struct Builder<'l> {
     /// The number of points in all sets.
     grouped: usize,
     limits: &'l Limits,
+    /// Whether cells of higher order gave their corners only.
+    pub(super) is_curved: bool,
     /// The highest index of a corner, and the place where it was found. Points may follow the cells that name them.
     highest: (u32, usize),
     /// The points without coordinates, and the places where they were found.
@@ -126,8 +128,8 @@ pub(super) struct Builder<'l> {
 impl<'l> Builder<'l> {
     pub(super) fn new(limits: &'l Limits) -> Self {
         let (cells, ghosts, groups, numbered, set_names, grouped) = Default::default();
-        let (highest, lost, names, named) = Default::default();
-        Self { cells, ghosts, groups, numbered, set_names, grouped, limits, highest, lost, names, named }
+        let (is_curved, highest, lost, names, named) = Default::default();
+        Self { cells, ghosts, groups, numbered, set_names, grouped, limits, is_curved, highest, lost, names, named }
     }
 
     pub(super) fn points(&self) -> usize {
@@ -341,6 +343,10 @@ impl<'l> Builder<'l> {
             let kind = ["point", "curve", "surface", "volume"].get(set.0 as usize).copied().unwrap_or("group");
             let name = self.set_names.get(&set).cloned().unwrap_or_else(|| format!("{kind} {}", set.1));
             self.group(name, points);
+        }
+        if self.is_curved {
+            let note = "has cells of higher order, of which the corners are read: their edges become straight";
+            self.cells.notes.push(note.to_owned());
         }
         // Some pieces may have none.
         self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);

@@ -279,6 +279,7 @@ impl Reader<'_, '_> {
             }
         }
         let corners = &corners[..kind.corners];
+        self.builder.is_curved |= kind.nodes > kind.corners;
         for &group in groups {
             self.builder.number((dimension, group), corners)?;
         }

@@ -35,6 +35,7 @@ pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Resu
         let message = format!("has a cell of type {kind} with {} points; expected {}", corners.len(), count.max(1));
         return Err(ReadError::new(message, DAMAGED));
     }
+    builder.is_curved |= count > 0 && corners.len() > count;
     match (kind, if count == 0 { corners } else { &corners[..count] }) {
         // Pixels and voxels are listed along their axes.
         (8, &[a, b, c, d]) => builder.cell(cell, &[a, b, d, c]),

@@ -81,6 +81,7 @@ impl<'b> Reader<'b, '_> {
     }
 
     fn cells(&mut self, kind: Kind) -> Result<(), ReadError> {
+        self.builder.is_curved |= kind.nodes > kind.corners;
         for _ in 0..self.count("the number of elements")? {
             let mut corners = [0; 8];
             for at in 0..kind.nodes {

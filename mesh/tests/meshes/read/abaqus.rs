@@ -1,13 +1,18 @@
 //! Cells and sets of Abaqus.
 
-use super::{LIMITS, bytes_of, check_kinds, group, groups, refusal, volume, whole};
+use super::{LIMITS, STRAIGHT, bytes_of, check_kinds, group, groups, refusal, volume, whole};
 use localshape_mesh::{Format, Limits, read_cells};
 
 #[test]
 fn cells_and_sets_are_read_from_abaqus() {
     let found = volume(bytes_of("kinds.inp"), Format::Abaqus);
     check_kinds(&found);
-    assert_eq!(found.notes, ["has elements that are not read: 2 of the type SPRINGA"]);
+    let notes = [
+        "has elements that are not read: 2 of the type SPRINGA",
+        "has lines and faces beside its solids, which are left out: 1",
+        STRAIGHT[0],
+    ];
+    assert_eq!(found.notes, notes);
     let expected = [
         ("CUBE", 1),
         ("Left end", 3),

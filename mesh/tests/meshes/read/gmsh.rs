@@ -1,6 +1,6 @@
 //! Cells and groups of Gmsh.
 
-use super::{bytes_of, file, group, groups, refusal, volume, whole};
+use super::{STRAIGHT, bytes_of, file, group, groups, refusal, volume, whole};
 use localshape_mesh::Format;
 use localshape_sim::Dimension;
 
@@ -32,6 +32,7 @@ fn corners_of_second_order_elements_in_a_plane_are_read() {
     assert_eq!((found.dimension, found.turned), (Dimension::Plane, 0));
     assert!(found.points.iter().all(|point| point.z == 0.0), "it lies at z = 3 in the file");
     assert!((whole(&found) - 2.0).abs() < 1e-12);
+    assert_eq!(found.notes, STRAIGHT);
     assert_eq!(found.groups.iter().map(|group| &*group.name).collect::<Vec<_>>(), ["left edge", "sheet"]);
     assert!(found.groups[0].points.iter().all(|&point| found.points[point as usize].x == 0.0));
 }

@@ -1,6 +1,6 @@
 //! Cells and references of Medit.
 
-use super::{bytes_of, check_kinds, group, groups, refusal, surface, volume, whole};
+use super::{STRAIGHT, bytes_of, check_kinds, group, groups, refusal, surface, volume, whole};
 use localshape_mesh::Format;
 use localshape_sim::Dimension;
 
@@ -22,7 +22,9 @@ fn cells_and_references_are_read_from_medit() {
     assert_eq!((found.dimension, groups(&found), found.points.len()), (Dimension::Plane, vec![], 4));
     assert!((whole(&found) - 2.0).abs() < 1e-12);
     let second = plane.replace("Quadrilaterals\n1\n1 2 3 4 0", "TrianglesP2\n1\n1 2 3 5 5 5 0");
-    assert!((whole(&volume(second, Format::Medit)) - 1.0).abs() < 1e-12);
+    let second = volume(second, Format::Medit);
+    assert!((whole(&second) - 1.0).abs() < 1e-12);
+    assert_eq!(second.notes, STRAIGHT);
     let points = ["0 0", "2 0", "2 1", "0 1", "1 0"].map(|point| format!("\n{point} 0"));
     let space = (0..).zip(&points).fold(plane.replace("Dimension 2", "Dimension 3"), |text, (at, point)| {
         text.replacen(point, &format!("{} {} 0", &point[..4], at % 2), 1)
@@ -35,11 +37,7 @@ fn refusals_of_medit_files_say_where_and_what_to_do() {
     let text = String::from_utf8(bytes_of("kinds.mesh")).expect("text");
     for (from, to, expected) in [
         ("MeshVersionFormatted 2", "MeshVersionFormatted x", "has `x` in line 1; expected the version ("),
-        (
-            "MeshVersionFormatted 2",
-            "MFEM mesh v1.0",
-            "begins with `MFEM mesh v1.0`; expected `MeshVersionFormatted`, as a Medit",
-        ),
+        ("MeshVersionFormatted 2", "Mesh v1.0", "begins with `Mesh v1.0`; expected `MeshVersionFormatted`, as a Medit"),
         ("Dimension\n3", "Dimension\n4", "has `4` in line 5; expected the dimension 2 or 3 ("),
         ("1 2 3 4 1\n", "1 2 3 24 1\n", "names point 24 in line 48, but has points 1 to 23 ("),
         ("1 2 3 4 1\n", "1 2 3 0 1\n", "names a point that it does not have in line 48 ("),

@@ -21,6 +21,9 @@ use localshape_sim::{Dimension, Solids};
 
 const LIMITS: Limits = Limits { points: 1_000_000, corners: 8_000_000 };
 
+/// What is said of cells of higher order.
+const STRAIGHT: [&str; 1] = ["has cells of higher order, of which the corners are read: their edges become straight"];
+
 /// A file in `tests/files`.
 fn file(name: &str) -> (Vec<u8>, Format) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files").join(name);
