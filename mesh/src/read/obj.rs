@@ -37,6 +37,12 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
             b"o" => builder.name(1, vec![whole(line.rest())]),
             b"usemtl" => builder.name(2, vec![whole(line.rest())]),
             b"vt" | b"vn" | b"vp" | b"s" | b"l" | b"p" | b"mtllib" => {}
+            // The first keyword of a free-form curve or surface.
+            b"cstype" => {
+                let error =
+                    ReadError::new("has free-form curves or surfaces only", "export it as triangles or polygons");
+                unknown = unknown.or(Some(error));
+            }
             word => unknown = unknown.or_else(|| Some(line.wrong(word, "`v`, `f` or another keyword of OBJ"))),
         }
     }

@@ -232,8 +232,7 @@ impl<'b> Source<'b> {
             };
         }
         let word = self.word();
-        match std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite())
-        {
+        match real(word).filter(|value| value.is_finite()) {
             Some(value) => Ok(value),
             None if may_be_unknown && is_no_number(word) => Ok(f64::NAN),
             None => Err(match comma(word) {
@@ -305,6 +304,13 @@ impl<'b> Source<'b> {
         }
         ReadError::new(format!("ends {}; expected {expected}", self.place(self.bytes.len())), CUT)
     }
+}
+
+/// A number in the notation of C, or in that of Fortran: `1.5D+00`.
+#[inline]
+fn real(word: &[u8]) -> Option<f64> {
+    let word = std::str::from_utf8(word).ok()?;
+    word.parse().ok().or_else(|| word.replace(['D', 'd'], "e").parse().ok())
 }
 
 /// What to do about a number with a comma.

@@ -37,7 +37,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
         }
         (Cow::Borrowed(text), None)
     };
-    let mut value: Value = from_slice(&text).map_err(|error| no(error.to_string()))?;
+    let mut value: Value = from_slice(&text).map_err(|error| match error.is_eof() {
+        true => ReadError::new("ends in its JSON", CUT),
+        false => no(error.to_string()),
+    })?;
     if is_old(&value) {
         return Err(old());
     }

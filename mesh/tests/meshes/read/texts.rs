@@ -53,6 +53,15 @@ fn decimal_commas_are_told() {
 }
 
 #[test]
+fn exponents_of_fortran_are_read() {
+    for number in ["0.5D0", "5d-1", "+.05D+01"] {
+        let found = surface(format!("v 0 0 0\nv {number} 0 0\nv 0 1 0\nf 1 2 3\n"), Format::Obj);
+        assert_eq!(found.points[1], DVec3::new(0.5, 0.0, 0.0), "{number}");
+    }
+    assert!(refusal(b"v 1 D 2\n", Format::Obj).starts_with("has `D` in line 1; expected a coordinate"));
+}
+
+#[test]
 fn lines_end_with_carriage_returns_in_all_texts() {
     for name in ["cube.off", "cube-text.ply", "cube-text.stl", "cube.obj"] {
         let (bytes, format) = file(name);
