@@ -49,7 +49,14 @@ impl MeshFile {
             let (found, help) = match &*ending {
                 "" => ("has no ending".to_owned(), inside(&bytes)),
                 "npz" => ("is a NumPy archive".to_owned(), Some("write `file` in place of `mesh`".to_owned())),
-                _ => (format!("is a .{ending} file"), inside(&bytes).or_else(|| other(&ending))),
+                "pvd" | "series" => {
+                    ("is a list of moments".to_owned(), Some("write it as `states` of a run".to_owned()))
+                }
+                // The content of `.pvtu` is like that of its pieces.
+                _ => {
+                    let help = inside(&bytes).filter(|_| ending != "pvtu").or_else(|| other(&ending));
+                    (format!("is a .{ending} file"), help)
+                }
             };
             return Err((format!("{found}; {expected}"), help));
         };
@@ -73,15 +80,15 @@ impl MeshFile {
     }
 }
 
-/// Whether a file has the ending of a mesh, of one that is not read, too, or another ending and the content of a mesh.
+/// Whether a file has the ending of a mesh, of one that is not read, too, or of a list of them, or another ending and the content of a mesh.
 pub(crate) fn is_mesh(path: &Path) -> bool {
     let ending = ending(path);
-    if Format::of(&ending).is_some() || mesh::converter(&ending).is_some() {
+    if Format::of(&ending).is_some() || mesh::converter(&ending).is_some() || matches!(&*ending, "pvd" | "series") {
         return true;
     }
     let mut head = Vec::new();
     // Reading a pipe would take what is in it.
-    let file = (ending != "toml" && path.is_file()).then(|| File::open(path).ok()).flatten();
+    let file = path.is_file().then(|| File::open(path).ok()).flatten();
     let is_read = file.is_some_and(|file| file.take(1024).read_to_end(&mut head).is_ok());
     // JSON that says nothing else is no mesh.
     is_read && Format::within(&head).is_some_and(|format| format != Format::Gltf || head.starts_with(b"glTF"))
@@ -174,21 +181,24 @@ fn counted<const N: usize>(flaws: [(usize, &str, &str); N]) -> Vec<String> {
 
 /// The flaws of a surface that are left: the predicate of a sentence about it, and a remedy. `closed` says whether it has an inside
 /// all the same.
-pub(crate) fn left(flaws: &Flaws, closed: bool) -> Option<(String, String)> {
+/// A scene may join points nearer than `weld`, which helps.
+pub(crate) fn left(flaws: &Flaws, closed: bool, weld: Option<f64>) -> Option<(String, String)> {
     let left = counted([
         (flaws.boundary, "open edge", ""),
         (flaws.non_manifold, "edge", " of three triangles or more"),
         (flaws.inconsistent, "edge", " whose triangles look to different sides"),
     ]);
-    let (what, help) = match closed {
-        true => ("where parts may be joined or not", "separate or join them in the program that made it"),
-        false => (
-            "and is filled where its triangles enclose most",
-            "close it with `weld` if `localshape check FILE` proposes it, or in the program that made it, unless the \
-             elements are right",
-        ),
+    let (what, help) = match (closed, weld) {
+        (true, _) => {
+            ("where parts may be joined or not", "separate or join them in the program that made it".to_owned())
+        }
+        (false, weld) => {
+            let join = weld.map(|weld| format!("join points that are close: write weld = {} (m), or ", short(weld)));
+            let help = "close it in the program that made it, unless the elements are right";
+            ("and is filled where its triangles enclose most", join.unwrap_or_default() + help)
+        }
     };
-    (!left.is_empty()).then(|| (format!("has {}, {what}", list(&left, "and", str::to_owned)), help.to_owned()))
+    (!left.is_empty()).then(|| (format!("has {}, {what}", list(&left, "and", str::to_owned)), help))
 }
 
 /// The faults of a surface of this volume that show in the elements that fill it: predicates of sentences about it, with a remedy each. Their side and the

@@ -352,7 +352,7 @@ fn points_are_welded_within_a_distance_in_metres() {
     let scene = |lines: &str, name: &str| load(&with(name, lines), &files).unwrap();
     let open = messages(&scene("fill.cells = 6", "a.stl"));
     assert!(
-        open.contains("36 open edges") && open.contains("with `weld` if `localshape check FILE` proposes it"),
+        open.contains("36 open edges") && open.contains("write weld = 1e-6 (m), or close it in the program"),
         "{open}"
     );
     let welded = "`a.stl` is mended: 28 points welded, nearer than weld = 1e-6 m to others \n";

@@ -1,7 +1,7 @@
 //! Formats of meshes that are not read, and what converts them.
 
 /// Endings of files, and what to do.
-const CONVERTERS: [(&str, &str); 9] = [
+const CONVERTERS: [(&str, &str); 10] = [
     (
         "step stp iges igs brep",
         "mesh it with Gmsh: `gmsh -3 FILE -o NEW.msh` for cells, `gmsh -2 FILE -o NEW.stl` for its surface",
@@ -18,8 +18,9 @@ const CONVERTERS: [(&str, &str); 9] = [
         "convert it with meshio: `meshio convert FILE NEW.vtu`",
     ),
     ("unv", "convert it with Gmsh: `gmsh FILE -save -o NEW.msh`"),
-    ("cas cdb dyn key k neu", "write it as Abaqus (`.inp`) or Gmsh (`.msh`) file from the program that made it"),
-    ("vti vtm vtr vts", "open it in ParaView, and save it as `.vtu`"),
+    ("cas", "convert it with meshio: `meshio convert --input-format ansys FILE NEW.vtu`"),
+    ("cdb dyn key k neu", "write it as an Abaqus (`.inp`) or Gmsh (`.msh`) file from the program that made it"),
+    ("pvtu vti vtm vtr vts", "open it in ParaView, and save it as `.vtu`"),
 ];
 
 /// What converts a file to a format that is read, by its ending in small letters and without the dot. `None` for files that are no

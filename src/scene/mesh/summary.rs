@@ -177,7 +177,8 @@ impl MeshSummary {
             }
         });
         // Without any elements the fills say what is wrong.
-        let told = left(&flaws, closed).filter(|_| of_cage.is_some()).into_iter().chain(of_cage.into_iter().flatten());
+        let told =
+            left(&flaws, closed, None).filter(|_| of_cage.is_some()).into_iter().chain(of_cage.into_iter().flatten());
         let content = Content::Surface(SurfaceSummary {
             triangles: surface.triangles.len(),
             area,
@@ -234,7 +235,7 @@ impl fmt::Display for MeshSummary {
                 };
                 line("form", &form)?;
                 if cells.turned > 0 {
-                    line("mended", &format!("{} turned over, which were inside out", several(cells.turned, "cell")))?;
+                    line("mended", &format!("{} turned over, inside out in the file", several(cells.turned, "cell")))?;
                 }
             }
             Content::Surface(surface) => {

@@ -138,7 +138,8 @@ fn filled<'a>(
     }
     let measures = filled.surface.measures();
     let doubts = mesh::doubts(&filled.cage, measures.volume, side, longest, typed.side.is_some());
-    for (message, help) in mesh::left(&filled.flaws, measures.closed).into_iter().chain(doubts) {
+    let weld = if measures.closed { None } else { filled.surface.closing_weld() };
+    for (message, help) in mesh::left(&filled.flaws, measures.closed, weld).into_iter().chain(doubts) {
         report.warn(&path, format!("`{name}` {message}"), help);
     }
     let Cage { nodes, elements, .. } = &filled.cage;

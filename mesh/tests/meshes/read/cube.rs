@@ -134,7 +134,7 @@ fn a_cube_is_read_from_files_of_every_format_of_surfaces() {
 
 #[test]
 fn refusals_say_where_and_what_to_do() {
-    use Format::{Gltf, Obj, Off, Ply, Stl, Vtu};
+    use Format::{Gltf, Gmsh, Medit, Obj, Off, Ply, Stl, Vtu};
     let damaged = "(the file is damaged: copy, download or write it again)";
     let incomplete = "(the file is incomplete: copy, download or write it again)";
     for (format, text, expected) in [
@@ -205,6 +205,11 @@ fn refusals_say_where_and_what_to_do() {
             "has the content of an OBJ file, but the ending of an STL file (name it `.obj`)".to_owned(),
         ),
         (Ply, "v 0 0 0.5e1\r\nv 1 0 0", "has the content of an OBJ file, but the ending of a PLY file".to_owned()),
+        (Gltf, "{\"asset\": {", "ends in its JSON (the file is incomplete".to_owned()),
+        (Gmsh, "(0 \"Fluent\")\n", "is a Fluent file, and no mesh file (convert it with meshio: `meshio".to_owned()),
+        (Medit, "MFEM mesh v1.0\n", "is an MFEM file, and no mesh file (write it as `.vtu` with".to_owned()),
+        (Medit, "<mesh>\n", "is another XML file, and no mesh file (convert".to_owned()),
+        (Obj, "v 0 0 0\ncstype bezier\n", "has free-form curves or surfaces only (export it as tri".to_owned()),
         (Gltf, "what\n", "begins with `what`; expected `{` or `glTF`, as a glTF file does (check".to_owned()),
         (Obj, "# empty\n", "has no points, faces or cells (write it again with the object".to_owned()),
         (Vtu, "{}", "has the content of a glTF file, but the ending of a VTU file (name it `.gltf`)".to_owned()),
