@@ -65,7 +65,7 @@ impl Sequence {
             )),
             moments if !moves => Some((
                 format!("does not move: its {moments} moments have the same points"),
-                "if an array has their displacements, name it `displacement` in the .vtu files of all moments",
+                "unless it stands still, write moved points, or, in VTK's files, their displacements as an array `displacement`",
             )),
             _ => None,
         };
