@@ -1,39 +1,6 @@
-//! Disjoint sets of numbers, and bins of values.
-
-/// Disjoint sets of numbers from 0 on. The first number of a set is its lowest.
-pub(crate) struct Sets(Vec<u32>);
-
-impl Sets {
-    /// Each number alone.
-    pub(crate) fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    /// The first number of the set of one.
-    pub(crate) fn first(&mut self, mut of: u32) -> u32 {
-        while self.0[of as usize] != of {
-            // Shorter paths.
-            let next = self.0[of as usize];
-            self.0[of as usize] = self.0[next as usize];
-            of = next;
-        }
-        of
-    }
-
-    /// Unites two sets.
-    pub(crate) fn join(&mut self, one: u32, other: u32) {
-        let (one, other) = (self.first(one), self.first(other));
-        self.0[one.max(other) as usize] = one.min(other);
-    }
-
-    /// The number of sets.
-    pub(crate) fn count(&self) -> usize {
-        (0..).zip(&self.0).filter(|&(number, &leads)| number == leads).count()
-    }
-}
+//! Bins of values.
 
 /// Values in bins, in each in the order in which they came.
-#[cfg(feature = "render")]
 #[derive(Debug)]
 pub(crate) struct Bins<T> {
     /// For each bin the end of its values.
@@ -41,7 +8,6 @@ pub(crate) struct Bins<T> {
     values: Vec<T>,
 }
 
-#[cfg(feature = "render")]
 impl<T: Copy + Default> Bins<T> {
     /// Puts values into a number of bins, each value into the bin with which it comes.
     pub(crate) fn new(bins: usize, all: impl Iterator<Item = (u32, T)> + Clone) -> Self {
@@ -79,15 +45,6 @@ impl<T: Copy + Default> Bins<T> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn sets_are_united() {
-        let mut sets = Sets::new(6);
-        [[4, 2], [5, 4], [0, 1]].into_iter().for_each(|[one, other]| sets.join(one, other));
-        assert_eq!([0, 1, 2, 3, 4, 5].map(|one| sets.first(one)), [0, 0, 2, 3, 2, 2]);
-        assert_eq!(sets.count(), 3);
-    }
-
-    #[cfg(feature = "render")]
     #[test]
     fn bins_keep_the_order_of_their_values() {
         let bins = Bins::new(4, [(2, 'c'), (0, 'b'), (2, 'a'), (0, 'd')].into_iter());

@@ -84,6 +84,8 @@ pub use scene::{
 
 #[cfg(feature = "render")]
 pub mod animation;
+#[cfg(feature = "render")]
+mod bins;
 mod carried;
 mod cli;
 mod colour;
@@ -103,7 +105,6 @@ mod reading;
 pub mod render;
 pub mod runner;
 pub mod scene;
-mod sets;
 #[cfg(feature = "render")]
 pub mod vector;
 

@@ -38,16 +38,28 @@ pub(crate) fn net(edge: &[EdgeUse]) -> i32 {
     edge.iter().map(|edge| if edge.forward { 1 } else { -1 }).sum()
 }
 
-/// Disjoint sets of numbers. The representative of a set is its lowest.
+/// The piece of some triangles to which each point belongs, and how many there are.
+pub(crate) fn pieces(points: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize) {
+    let mut sets = Sets::new(points);
+    for &[a, b, c] in triangles {
+        sets.join(a, b);
+        sets.join(a, c);
+    }
+    sets.numbered()
+}
+
+/// Disjoint sets of numbers from 0 on, such as the points of pieces of a surface.
 #[derive(Clone, Debug)]
-pub(crate) struct Sets(Vec<u32>);
+pub struct Sets(Vec<u32>);
 
 impl Sets {
-    pub(crate) fn new(count: usize) -> Self {
+    /// Each number alone.
+    pub fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
 
-    pub(crate) fn of(&mut self, mut one: u32) -> u32 {
+    /// The lowest number of the set of one.
+    pub fn of(&mut self, mut one: u32) -> u32 {
         while self.0[one as usize] != one {
             self.0[one as usize] = self.0[self.0[one as usize] as usize];
             one = self.0[one as usize];
@@ -55,13 +67,14 @@ impl Sets {
         one
     }
 
-    pub(crate) fn join(&mut self, one: u32, other: u32) {
+    /// Unites two sets.
+    pub fn join(&mut self, one: u32, other: u32) {
         let (one, other) = (self.of(one), self.of(other));
         self.0[one.max(other) as usize] = one.min(other);
     }
 
     /// The set of each number, counted in the order of the lowest numbers of sets, and how many there are.
-    pub(crate) fn numbered(mut self) -> (Vec<u32>, usize) {
+    pub fn numbered(mut self) -> (Vec<u32>, usize) {
         let mut count = 0;
         let mut number: Vec<u32> = Vec::with_capacity(self.0.len());
         for one in 0..self.0.len() as u32 {
@@ -74,5 +87,18 @@ impl Sets {
             }
         }
         (number, count as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_are_united() {
+        let mut sets = Sets::new(6);
+        [[4, 2], [5, 4], [0, 1]].into_iter().for_each(|[one, other]| sets.join(one, other));
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|one| sets.of(one)), [0, 0, 2, 3, 2, 2]);
+        assert_eq!(sets.numbered(), (vec![0, 0, 1, 2, 1, 1], 3));
     }
 }

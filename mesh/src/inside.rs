@@ -11,7 +11,7 @@
 
 use super::Surface;
 use super::boxes::Boxes;
-use super::edges::{EdgeUse, Sets, net};
+use super::edges::{EdgeUse, Sets, net, pieces};
 use glam::{DVec2, DVec3};
 use localshape_sim::geometry::bounds;
 use rayon::prelude::*;
@@ -277,9 +277,7 @@ fn caps(surface: &Surface) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 fn without_sheets(points: &[DVec3], all: &[[u32; 3]]) -> Vec<[u32; 3]> {
     /// Flat means so flat, as a part of the area.
     const FLAT: f64 = 1e-12;
-    let mut sets = Sets::new(points.len());
-    all.iter().flat_map(|&[a, b, c]| [(a, b), (a, c)]).for_each(|(one, other)| sets.join(one, other));
-    let (piece_of, count) = sets.numbered();
+    let (piece_of, count) = pieces(points.len(), all);
     let piece = |of: &[u32; 3]| piece_of[of[0] as usize] as usize;
     let area = |of: &[u32; 3]| {
         let [a, b, c] = of.map(|point| points[point as usize]);

@@ -16,6 +16,7 @@ mod surface;
 mod volume;
 mod weld;
 
+pub use edges::Sets;
 pub use fill::{Cage, Fill, FillError, Filled, fill};
 pub use read::{
     Beside, CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, converter, read, read_cells, read_cells_with,

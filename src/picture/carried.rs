@@ -9,9 +9,10 @@ use super::shadow::{SurfaceCaster, edges};
 use super::shell::Side;
 use super::surface::{Border, HATCH_PERIOD, SurfaceContext, SurfaceLines, newell};
 use super::{LineKind, Mesh, Vertex};
+use crate::bins::Bins;
 use crate::carried::append_positions;
 use crate::look::BODIES;
-use crate::sets::{Bins, Sets};
+use crate::mesh::Sets;
 use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Body, Carried};
 use glam::{DVec3, Vec3};
@@ -107,7 +108,7 @@ impl Fine {
         let mut corner_of = vec![NONE; 3 * triangles.len()];
         let (mut points, mut corners) = (Vec::with_capacity(surface.rest.len()), Vec::with_capacity(corner_of.len()));
         for entry in 0..corner_of.len() {
-            let part = &mut corner_of[parts.first(entry as u32) as usize];
+            let part = &mut corner_of[parts.of(entry as u32) as usize];
             if *part == NONE {
                 *part = points.len() as u32;
                 points.push(triangles[entry / 3][entry % 3]);

@@ -4,7 +4,7 @@
 use super::measures::BEAD_RIM;
 use super::narrow::narrow;
 use super::{Colour, Rectangle, TextRun};
-use crate::sets::Bins;
+use crate::bins::Bins;
 use glam::{DVec2, Vec2};
 use std::f32::consts::TAU;
 

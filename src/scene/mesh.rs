@@ -7,11 +7,10 @@ pub(crate) use summary::MeshSummary;
 use super::limits::Limits;
 use crate::reading::beside::{self, Wrong, ending};
 use crate::reading::words::{count, hexadecimal, list, nearest, several, short};
-use crate::sets::Sets;
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
-use localshape_mesh::{self as mesh, Cage, Flaws, Format, Mesh, ReadError};
+use localshape_mesh::{self as mesh, Cage, Flaws, Format, Mesh, ReadError, Sets};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;
@@ -142,7 +141,7 @@ pub(crate) fn longest(points: &[DVec3]) -> f64 {
 pub(crate) fn parts(nodes: usize, elements: &IndexLists) -> usize {
     let mut sets = Sets::new(nodes);
     elements.iter().for_each(|element| element[1..].iter().for_each(|&node| sets.join(element[0], node)));
-    sets.count()
+    sets.numbered().1
 }
 
 /// The first corners of two sides of a polygon that cross each other, by their places in it.

@@ -1,11 +1,11 @@
 //! Parts of a surface that stand apart, each filled by itself.
 
-use super::embed::{body, pieces};
+use super::embed::body;
 use super::lattice::too_many;
 use super::{Cage, FillError, Filled};
 use crate::Surface;
 use crate::boxes::Boxes;
-use crate::edges::Sets;
+use crate::edges::{Sets, pieces};
 use glam::DVec3;
 use localshape_sim::geometry::{bounds, node_volumes};
 use rayon::prelude::*;
@@ -85,7 +85,7 @@ fn volumes(part: &Filled) -> Vec<f64> {
 /// # Errors
 /// If very many boxes lie side by side.
 fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
-    let (piece_of, count) = pieces(surface);
+    let (piece_of, count) = pieces(surface.points.len(), &surface.triangles);
     let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
     for (&piece, &point) in piece_of.iter().zip(&surface.points) {
         let (low, high) = &mut boxes[piece as usize];

@@ -8,7 +8,7 @@
 use super::cuts::Lattice;
 use super::draft::{Draft, Nodes};
 use crate::boxes::Boxes;
-use crate::edges::Sets;
+use crate::edges::{Sets, pieces};
 use crate::{Cage, FillError, Flaws, Surface};
 use glam::{DMat3, DVec3};
 use localshape_sim::geometry::{around, bounds};
@@ -51,7 +51,7 @@ pub(super) fn carry(
     lattice: &Lattice,
     build: impl Fn(&[u8], bool, Option<&[f64]>) -> Result<Draft, FillError>,
 ) -> Result<(Cage, Weights), FillError> {
-    let (pieces, _) = pieces(surface);
+    let (pieces, _) = pieces(surface.points.len(), &surface.triangles);
     let mut wide = vec![0u8; lattice.len()];
     // Shells of a closed surface may lie in each other.
     let mut inside = if lattice.is_closed() { Some(lattice.filled(flaws)?) } else { None };
@@ -126,16 +126,6 @@ pub(super) fn body(cage: &Cage) -> Body {
     let nodes = if cage.nodes.is_empty() { vec![DVec3::ZERO] } else { cage.nodes.clone() };
     let body = Body::builder(nodes).elements(cage.elements.clone()).solids(solids).fill(cage.filled.clone()).build();
     body.expect("a cage has sound elements")
-}
-
-/// The piece of the surface to which each point belongs, and how many there are.
-pub(super) fn pieces(surface: &Surface) -> (Vec<u32>, usize) {
-    let mut sets = Sets::new(surface.points.len());
-    for &[a, b, c] in &surface.triangles {
-        sets.join(a, b);
-        sets.join(a, c);
-    }
-    sets.numbered()
 }
 
 /// How elements hang together.

@@ -45,6 +45,19 @@ pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Resu
     }
 }
 
+/// The faces in a list of their number, and for each the number of its points and the points.
+pub(super) fn faces(list: &[i64]) -> Option<Vec<&[i64]>> {
+    let (count, mut rest) = list.split_first()?;
+    let mut faces = Vec::new();
+    for _ in 0..*count {
+        let (length, after) = rest.split_first()?;
+        let length = usize::try_from(*length).ok()?;
+        faces.push(after.get(..length)?);
+        rest = &after[length..];
+    }
+    Some(faces)
+}
+
 /// Adds a polyhedron with these faces, as a tetrahedron, pyramid, wedge or hexahedron if it is one. More points than its corners may be
 /// listed: those that hang in its edges and faces.
 pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Builder<'_>) -> Result<(), ReadError> {

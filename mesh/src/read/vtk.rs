@@ -314,17 +314,9 @@ impl Reader<'_, '_> {
             let corners = corners(list)?;
             return kinds::add(kind, &corners, &mut self.builder);
         }
-        // The number of faces, and for each the number of its points and the points.
-        let mut faces = Vec::new();
-        let mut rest = list.get(1..).unwrap_or_default();
-        while let [count, after @ ..] = rest {
-            let count = usize::try_from(*count).ok().filter(|count| *count <= after.len());
-            let Some(count) = count else {
-                return Err(ReadError::new("has a polyhedron whose faces have more points than it lists", DAMAGED));
-            };
-            faces.push(corners(&after[..count])?);
-            rest = &after[count..];
-        }
+        let damaged = || ReadError::new("has a polyhedron whose faces have more points than it lists", DAMAGED);
+        let faces = kinds::faces(list).ok_or_else(damaged)?;
+        let faces = faces.into_iter().map(corners).collect::<Result<Vec<_>, _>>()?;
         kinds::polyhedron(&faces, &[], &mut self.builder)
     }
 

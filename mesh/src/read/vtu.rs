@@ -564,16 +564,7 @@ impl Polyhedra {
                 .rev()
                 .find(|&&end| end >= 0)
                 .map_or(Some(0), |&end| usize::try_from(end).ok())?;
-            let stream = self.streams.get(before..end)?;
-            let (count, mut rest) = stream.split_first()?;
-            let mut faces = Vec::new();
-            for _ in 0..*count {
-                let (length, after) = rest.split_first()?;
-                let length = usize::try_from(*length).ok()?;
-                faces.push(after.get(..length)?);
-                rest = &after[length..];
-            }
-            return Some(faces);
+            return kinds::faces(self.streams.get(before..end)?);
         }
         let part = |ends: &[i64], at: usize| -> Option<std::ops::Range<usize>> {
             let end = usize::try_from(*ends.get(at)?).ok()?;
