@@ -328,6 +328,8 @@ fn says_what_converts_files_that_are_not_read() {
         ran.bad(2, &[&format!("{name} is a .{} file", name[5..].to_lowercase()), tool]);
     }
     place.run("simulate part.step").bad(2, &["part.step", "mesh"]);
+    place.write("cube.toml", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    place.run("check cube.toml").bad(2, &["cube.toml is a .toml file", "by its content it is a .obj file: name it so"]);
 }
 
 /// Two hexahedra side by side, and a pentagon that crosses itself.

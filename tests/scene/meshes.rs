@@ -43,6 +43,16 @@ fn files_that_are_no_meshes_are_named() {
     wrong(&named("body.stll"), &[("body.stll", b"")], &["is a .stll file", "did you mean .stl?"]);
     let series = load(&named("body.vtm"), &[("body.vtm", b"")]).unwrap_err().to_string();
     assert!(series.contains("is a .vtm file") && !series.contains("did you mean"), "{series}");
+    // The content says more than an ending that says nothing.
+    for name in ["body", "body.k", "body.step"] {
+        wrong(&named(name), &[(name, CUBE.as_bytes())], &["by its content it is a .obj file: name it so"]);
+    }
+    wrong(&named("body.k"), &[("body.k", b"*KEYWORD")], &["is a .k file", "write it as an Abaqus (`.inp`)"]);
+    let pieces = b"<VTKFile type='PUnstructuredGrid'>";
+    wrong(&named("body.pvtu"), &[("body.pvtu", pieces)], &["is a .pvtu file", "open it in ParaView"]);
+    for name in ["body.pvd", "body.vtu.series"] {
+        wrong(&named(name), &[(name, b"{}")], &["is a list of moments", "write it as `states` of a run"]);
+    }
     wrong(&named("body"), &[("body", b"")], &["`body` has no ending; expected a mesh: .obj, .stl, .ply"]);
     wrong(&named("."), &[], &["`.` is a folder; expected a mesh"]);
 }

@@ -17,7 +17,7 @@ pub(super) fn check(bytes: &[u8], format: Format) -> Result<(), ReadError> {
     }
     let other = match found(bytes) {
         Some(Found::Format(found)) if found != format => found,
-        Some(Found::Other(what, help)) => return Err(ReadError::new(format!("is {what}, and no mesh file"), help)),
+        Some(Found::Other(what, help)) => return Err(ReadError::new(format!("is {what}, and is not read"), help)),
         _ => return Ok(()),
     };
     let message = format!("has the content of {}, but the ending of {}", other.known().1, format.known().1);

@@ -108,6 +108,6 @@ fn formats_that_are_not_read_have_converters() {
     assert!(["toml", "npz", "png", ""].iter().all(|ending| converter(ending).is_none()));
     assert!(
         refusal(b"ISO-10303-21;\n", Format::Obj)
-            .contains("is a STEP file, and no mesh file (mesh it with Gmsh: `gmsh -3")
+            .contains("is a STEP file, and is not read (mesh it with Gmsh: `gmsh -3")
     );
 }

@@ -186,7 +186,7 @@ fn refusals_say_where_and_what_to_do() {
         (
             Obj,
             "<!DOCTYPE html>\n<p>not found",
-            "is a page of the Web (HTML), and no mesh file (the download gave".to_owned(),
+            "is a page of the Web (HTML), and is not read (the download gave".to_owned(),
         ),
         (
             Obj,
@@ -206,9 +206,9 @@ fn refusals_say_where_and_what_to_do() {
         ),
         (Ply, "v 0 0 0.5e1\r\nv 1 0 0", "has the content of an OBJ file, but the ending of a PLY file".to_owned()),
         (Gltf, "{\"asset\": {", "ends in its JSON (the file is incomplete".to_owned()),
-        (Gmsh, "(0 \"Fluent\")\n", "is a Fluent file, and no mesh file (convert it with meshio: `meshio".to_owned()),
-        (Medit, "MFEM mesh v1.0\n", "is an MFEM file, and no mesh file (write it as `.vtu` with".to_owned()),
-        (Medit, "<mesh>\n", "is another XML file, and no mesh file (convert".to_owned()),
+        (Gmsh, "(0 \"Fluent\")\n", "is a Fluent file, and is not read (convert it with meshio: `meshio".to_owned()),
+        (Medit, "MFEM mesh v1.0\n", "is an MFEM file, and is not read (write it as `.vtu` with".to_owned()),
+        (Medit, "<mesh>\n", "is another XML file, and is not read (convert".to_owned()),
         (Obj, "v 0 0 0\ncstype bezier\n", "has free-form curves or surfaces only (export it as tri".to_owned()),
         (Gltf, "what\n", "begins with `what`; expected `{` or `glTF`, as a glTF file does (check".to_owned()),
         (Obj, "# empty\n", "has no points, faces or cells (write it again with the object".to_owned()),
