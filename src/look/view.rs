@@ -116,13 +116,6 @@ impl View {
         [ghost.map(|run| ("ghost", run)), to.map(|run| ("colour.to", run))]
     }
 
-    /// Whether there are colours, lines or arrows to explain.
-    #[cfg(feature = "render")]
-    pub(crate) fn wants_legend(&self) -> bool {
-        let shown = [self.visible.displacements, self.colour.is_some(), self.ghost.is_some(), !self.paths.is_empty()];
-        self.labels.legend && (shown.contains(&true) || !self.coloured_bodies().is_empty())
-    }
-
     /// The names of the bodies whose surfaces have a colour of their own.
     #[cfg(feature = "render")]
     pub(crate) fn coloured_bodies(&self) -> &[String] {

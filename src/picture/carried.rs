@@ -7,7 +7,7 @@ use super::narrow::{narrow, narrow_count, narrow_point};
 use super::page::{self, joined};
 use super::shadow::{SurfaceCaster, edges};
 use super::shell::Side;
-use super::surface::{Border, HATCH_PERIOD, SurfaceContext, SurfaceLines, newell};
+use super::surface::{Border, SurfaceContext, SurfaceLines, newell};
 use super::{LineKind, Mesh, Vertex};
 use crate::bins::Bins;
 use crate::carried::append_positions;
@@ -322,7 +322,7 @@ impl SurfaceContext<'_> {
         if is_over.is_empty() {
             return;
         }
-        let period = HATCH_PERIOD * self.soft[fine.body];
+        let period = self.hatches[fine.body].period;
         let mut places = vec![NONE; fine.points.len()];
         let over = fine.triangles.iter().zip(is_over).filter(|(_, over)| **over).map(|(triangle, _)| triangle);
         for triangle in over {

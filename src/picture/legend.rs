@@ -5,6 +5,7 @@ use super::arrows;
 use super::caption::Writer;
 use super::chart::axis::{Kind, Stretch};
 use super::chart::{Axis, Chart, PlotArea};
+use super::compose::overlay::explained;
 use super::ghost;
 use super::layout::steps::{BESIDE, BLOCK, MARGIN, NAME_ROW, SHORT, SMALL, STRONG, TEXT, TILE};
 use super::layout::tree::{self, Node};
@@ -94,10 +95,13 @@ pub(super) struct Legend {
 impl Legend {
     /// The key of a view with panels of a scale; `None` if there is nothing to explain.
     pub(super) fn of(view: &View, scale: Scale) -> Option<Self> {
-        let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
-        let samples = samples.iter().filter(|&&is_shown| is_shown).count() as f64;
-        let bodies = view.coloured_bodies().len().min(BODIES) as f64;
-        view.wants_legend().then(|| Self::new(view.size, scale, samples + BODY * bodies, view.colour.is_some()))
+        let (overlays, bodies) = (explained(view) as f64, view.coloured_bodies().len().min(BODIES) as f64);
+        Self::is_wanted(view).then(|| Self::new(view.size, scale, overlays + BODY * bodies, view.colour.is_some()))
+    }
+
+    /// Whether there are colours, lines or arrows to explain.
+    pub(super) fn is_wanted(view: &View) -> bool {
+        view.labels.legend && (explained(view) > 0 || view.colour.is_some() || !view.coloured_bodies().is_empty())
     }
 
     /// The key of a picture of a size (px) with panels of a scale, with a number of samples, and with or without a bar. A

@@ -19,6 +19,7 @@ mod cut;
 mod diagram;
 mod ears;
 mod field;
+mod flat;
 mod framing;
 mod ghost;
 mod layout;
@@ -103,7 +104,7 @@ pub(crate) struct Panel {
     pub obstacles: Obstacles,
     /// Coloured lines, such as springs, above the surfaces, in the order in which they are drawn.
     pub strokes: Vec<Stroke>,
-    /// Nodes in space, above the strokes, in the order in which they are drawn.
+    /// Nodes, above the strokes, in the order in which they are drawn.
     pub beads: Vec<Bead>,
     /// Whether the body leaves the viewport.
     pub is_cut: bool,
@@ -112,7 +113,7 @@ pub(crate) struct Panel {
 /// The obstacles of a panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Obstacles {
-    /// Opaque obstacles.
+    /// Opaque obstacles; in the plane the nearest is the last.
     pub solids: Vec<Solid>,
     /// The faces of transparent obstacles towards the viewer, from the farthest to the nearest.
     pub panes: Vec<Pane>,
@@ -157,7 +158,7 @@ pub(crate) struct Occluder {
 /// A closed surface of one colour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Solid {
-    /// The surface.
+    /// The surface; in the plane the corners of a polygon alone.
     pub mesh: Mesh,
     /// Its colour, before lighting.
     pub colour: Colour,
@@ -338,7 +339,7 @@ pub(crate) enum Second {
     Casing(Colour),
 }
 
-/// A node in space: a disc that always faces the viewer.
+/// A node: a disc that always faces the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bead {
     /// Its middle.

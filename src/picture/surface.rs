@@ -3,7 +3,7 @@
 
 use super::camera::Lens;
 use super::cut::{CutPatch, CutPatches, Cuts};
-use super::ears::Ears;
+use super::ears::{self, Ears};
 use super::field::Shades;
 use super::measures::SMALLEST_ELEMENT;
 use super::narrow::{narrow, narrow_count, narrow_point};
@@ -13,11 +13,11 @@ use crate::bins::Bins;
 use crate::look::BODIES;
 use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Body};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Stripes of the hatch have this period along `X + Y + Z` of the body at rest (units of soft distances).
-pub(super) const HATCH_PERIOD: f64 = 0.30;
 /// The largest distance of the flat pieces of a patch from it (px).
 const FLATNESS: f64 = 0.35;
 /// The finest cut of a patch in each direction, and of few faces: the cut that gives this many cells in all.
@@ -50,8 +50,8 @@ pub(super) struct SurfaceContext<'a> {
     pub(super) origin: DVec3,
     /// The panel's unit of length (m).
     pub(super) side: f64,
-    /// The unit of the hatch of each body (m).
-    pub(super) soft: Vec<f64>,
+    /// The hatch of each body.
+    pub(super) hatches: Vec<Hatch>,
     /// Length of an element's edge (px).
     pub(super) element: f64,
     /// Whether each element is flat.
@@ -62,6 +62,13 @@ pub(super) struct SurfaceContext<'a> {
     pub(super) coloured: bool,
     /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
     pub(super) edges: [bool; 2],
+}
+
+/// The hatch of a body. Stripes have a period (m) along `X + Y + Z` of the body at rest or, around a middle (m), at right angles
+/// to `X + Y` of the body now.
+pub(super) struct Hatch {
+    pub(super) period: f64,
+    pub(super) middle: Option<DVec3>,
 }
 
 /// Kinds of lines on a surface.
@@ -235,8 +242,9 @@ impl SurfaceContext<'_> {
         borders.facing.reserve(8 * faces.len());
         for (at, side) in faces.iter().enumerate() {
             self.corners(side, &mut patch.nodes);
-            let ears = self.ears.of(&patch.nodes);
-            let grid = bilinear(&patch.nodes, ears).map(|corners| grids.of(cuts.face(at, corners)));
+            let ears = self.ears(&patch.nodes);
+            let ears = ears.as_deref();
+            let grid = self.bilinear(&patch.nodes, ears).map(|corners| grids.of(cuts.face(at, corners)));
             let before = mesh.triangles.len();
             // Turned-over elements are hatched, flat ones among the others dotted.
             let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
@@ -293,12 +301,36 @@ impl SurfaceContext<'_> {
 
     /// Whether faces draw the edges of their elements.
     fn is_fine(&self) -> bool {
-        self.ears.is_empty() && self.element < FINE && self.body().elements().len() >= MANY_ELEMENTS
+        !self.lens.orthographic
+            && self.ears.is_empty()
+            && self.element < FINE
+            && self.body().elements().len() >= MANY_ELEMENTS
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
+    /// In the plane all are visible.
     pub(super) fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
-        -normal.dot(point - self.lens.eye)
+        if self.lens.orthographic { 1.0 } else { -normal.dot(point - self.lens.eye) }
+    }
+
+    /// The triangles of a face that is not convex: in space as at rest, in the plane as now, on a page whose y-axis points down.
+    fn ears(&self, nodes: &[u32]) -> Option<Cow<'_, [[u32; 3]]>> {
+        if !self.lens.orthographic {
+            return self.ears.of(nodes).map(Cow::Borrowed);
+        }
+        let mut corners: Vec<_> = nodes.iter().map(|&node| DVec2::new(self.at(node).x, -self.at(node).y)).collect();
+        let is_reversed = newell(&corners.iter().map(|at| at.extend(0.0)).collect::<Vec<_>>()).z < 0.0;
+        if is_reversed {
+            corners.reverse();
+        }
+        let last = corners.len() as u32 - 1;
+        let own = |ear: [u32; 3]| if is_reversed { ear.map(|at| last - at) } else { ear };
+        ears::ears(&corners).map(|ears| ears.into_iter().map(own).collect())
+    }
+
+    /// The corners of a face in space that is a bilinear patch.
+    fn bilinear(&self, nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
+        nodes.try_into().ok().filter(|_| ears.is_none() && !self.lens.orthographic)
     }
 
     /// A line between two points (m).
@@ -313,7 +345,7 @@ impl SurfaceContext<'_> {
 
     /// The number of pieces of each face, among a total number of faces.
     fn cuts(&self, faces: &[Side], total: usize) -> Cuts {
-        if total > VERY_MANY_FACES {
+        if self.lens.orthographic || total > VERY_MANY_FACES {
             return Cuts::none();
         }
         let of_few = (CELLS_OF_FEW / total.max(1)).isqrt().clamp(FINEST_CUT, FINEST_OF_FEW);
@@ -322,7 +354,7 @@ impl SurfaceContext<'_> {
         let mut nodes = Vec::new();
         for side in faces {
             self.corners(side, &mut nodes);
-            let corners = bilinear(&nodes, self.ears.of(&nodes));
+            let corners = self.bilinear(&nodes, self.ears.of(&nodes));
             cuts.add(&nodes, corners.map_or(1, |corners| self.cells(corners).min(affordable as f64) as u8));
         }
         cuts
@@ -360,8 +392,11 @@ impl SurfaceContext<'_> {
         corners.extend(nodes.iter().map(|&node| self.at(node)));
         phases.clear();
         let body = self.bodies.body_of_node(nodes[0] as usize);
-        let soft = self.soft[body];
-        let phase = |node: u32| self.body().rest()[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * soft);
+        let Hatch { period, middle } = self.hatches[body];
+        let phase = |node: u32| match middle {
+            Some(middle) => (self.at(node) - middle).dot(DVec3::X - DVec3::Y) * FRAC_1_SQRT_2 / period,
+            None => self.body().rest()[node as usize].dot(DVec3::ONE) / period,
+        };
         phases.extend(nodes.iter().map(|&node| dots.unwrap_or_else(|| phase(node))));
         points.clear();
         triangles.clear();
@@ -449,11 +484,6 @@ impl SurfaceContext<'_> {
             }
         }
     }
-}
-
-/// The corners of a face that is a bilinear patch.
-fn bilinear(nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
-    nodes.try_into().ok().filter(|_| ears.is_none())
 }
 
 /// Records coordinates of the points of a face that are 0 or 255 at its sides.

@@ -284,10 +284,10 @@ fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
         f64::from(winding(&path.points()).abs()) / 2.0 / (metre * metre)
     };
     let pi = std::f64::consts::PI;
-    // The last one is drawn first.
-    let drawn = parts(&picture.under, "obstacle");
-    assert_eq!(drawn.len(), 3);
-    for (items, exact) in drawn.iter().zip([0.4 + pi * 0.04, 0.08, pi * 0.125]) {
+    // The last one is drawn first, each with its inside over the colour of its rim.
+    let drawn = parts(&picture.under, "obstacle").concat();
+    assert_eq!(drawn.len(), 6);
+    for (items, exact) in drawn.chunks(2).zip([0.4 + pi * 0.04, 0.08, pi * 0.125]) {
         let [whole, inside] = [0, 1].map(|at| area(&items[at]) / exact);
         assert!((0.99..1.001).contains(&whole) && inside < whole, "{whole} {inside}");
     }

@@ -1,6 +1,6 @@
 //! The bodies of a run: the data that all their pictures share. Runs of the same bodies share it, too.
 
-use crate::picture::arrows;
+use super::overlay::bearers;
 use crate::picture::ears::{Ears, bare_elements};
 use crate::picture::shadow;
 use crate::picture::shell::is_broken;
@@ -106,11 +106,6 @@ impl<'a> Bodies<'a> {
         (0..self.assembly.bodies().len()).map(|at| self.assembly.nodes(at))
     }
 
-    /// The faces of each body.
-    pub(super) fn faces(&self) -> impl Iterator<Item = Range<usize>> {
-        (0..self.assembly.bodies().len()).map(|at| self.assembly.faces(at))
-    }
-
     /// The smallest signed area of a polygon that is not broken over its area at rest, for bodies in the plane.
     pub(super) fn smallest_area_ratio(&self, snapshot: &Snapshot) -> Option<f64> {
         let body = self.body();
@@ -121,15 +116,6 @@ impl<'a> Bodies<'a> {
         let areas = whole.map(|(at, rest)| (&body.elements()[at as usize], rest));
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
-}
-
-/// The nodes with arrows: those on the surface, and those of elements without faces.
-fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
-    let of_bare = bare.iter().flat_map(|&element| &body.elements()[element]);
-    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    arrows::bearers(&nodes)
 }
 
 /// The signed area of a polygon in the xy-plane (m²).

@@ -2,16 +2,23 @@
 
 use super::Composer;
 use super::draft::Draft;
-use super::plane_marks::node_radius;
 use crate::look::ColourScale;
+use crate::picture::layout::Scale;
+use crate::picture::layout::steps::{CLOSE, RING, THIN};
 use crate::picture::shell::{Side, boundaries, is_broken};
-use crate::picture::surface::{Lines, SurfaceContext, SurfaceLines};
+use crate::picture::surface::{Hatch, Lines, SurfaceContext, SurfaceLines};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use crate::sim::Field;
 use glam::DVec3;
 use std::borrow::Cow;
 use std::collections::HashSet;
+use std::ops::Range;
+
+/// The period of the hatch in space (units of soft distances).
+const HATCH_PERIOD: f64 = 0.30;
+/// The largest radius of nodes in lengths of an element's edge.
+const CROWDED: f64 = 0.14;
 
 impl Composer<'_> {
     /// The colour scale for the strain of a run's springs, if they show it.
@@ -31,6 +38,10 @@ impl Draft<'_> {
         if self.position.is_empty() || !self.scene.view.visible.surfaces {
             return [sound, turned_over];
         }
+        let hatch = |(soft, nodes): (&f64, Range<usize>)| match self.flat {
+            true => Hatch { period: RING * self.scale.line() / self.lens.focal, middle: Some(self.centre(nodes)) },
+            false => Hatch { period: HATCH_PERIOD * (soft * self.side), middle: None },
+        };
         let surroundings = SurfaceContext {
             bodies: self.bodies.assembly(),
             ears: &self.bodies.ears,
@@ -38,7 +49,7 @@ impl Draft<'_> {
             lens: &self.lens,
             origin: self.origin,
             side: self.side,
-            soft: self.bodies.soft_of.iter().map(|soft| soft * self.side).collect(),
+            hatches: self.bodies.soft_of.iter().zip(self.bodies.nodes()).map(hatch).collect(),
             edges: self.scene.view.edges.are_drawn(),
             element: self.element,
             flat: &self.run.snapshot.flat,
@@ -170,14 +181,14 @@ impl Draft<'_> {
         all.iter().zip(broken).filter(|&(_, broken)| !broken).map(|(&ends, _)| ends).collect()
     }
 
-    /// Nodes in space.
+    /// Nodes.
     pub(super) fn beads(&self) -> Vec<Bead> {
         self.bead_radius().map_or_else(Vec::new, |radius| self.wire().without_surfaces().beads(radius))
     }
 
-    /// The radius of nodes in space (px), if they are drawn.
+    /// The radius of nodes (px), if they are drawn.
     pub(super) fn bead_radius(&self) -> Option<f64> {
-        let drawn = self.scene.view.visible.nodes && !self.flat && !self.diverged;
+        let drawn = self.scene.view.visible.nodes && !self.diverged;
         drawn.then(|| node_radius(self.scale, self.element))
     }
 
@@ -197,4 +208,9 @@ impl Draft<'_> {
             shades: (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..])),
         }
     }
+}
+
+/// The radius of a node for elements with edges of a length (px), smaller than usual if they are short.
+pub(super) fn node_radius(scale: Scale, element: f64) -> f64 {
+    (CLOSE * scale.line()).min((CROWDED * element).max(THIN))
 }

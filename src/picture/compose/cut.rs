@@ -1,15 +1,11 @@
 //! Obstacles that leave their panel fade instead of being cut off.
 
 use super::draft::{Draft, PixelBox};
-use super::plane_body::path_of;
-use super::plane_marks::soft;
-use crate::picture::layout::Rectangle;
+use crate::picture::Fading;
 use crate::picture::layout::steps::NEAR;
 use crate::picture::narrow::narrow;
-use crate::picture::page::point;
 use crate::picture::plane::sides;
-use crate::picture::{Fading, Item};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// Solid obstacles fade over this part of the width and of the height. It is long enough for thick rods not to look
 /// cut, and short enough to keep most of the picture.
@@ -36,23 +32,6 @@ impl Draft<'_> {
         let distance = [FADE[0] * (right - left), FADE[1] * (bottom - top)].map(narrow);
         let room = [left, top, right, bottom].map(narrow);
         strength.iter().any(|&strength| strength > 0.0).then_some(Fading { room, distance, strength })
-    }
-
-    /// Covers obstacles with some outlines (m) at the sides of a part of the picture that they leave.
-    pub(super) fn cover(&self, solids: &[Vec<DVec3>], region: Rectangle) -> Option<Item> {
-        let Fading { distance, strength, .. } = self.fading(solids)?;
-        let [left, top, right, bottom] = sides(region.map(f64::from));
-        let size = DVec2::new(right - left, bottom - top);
-        let cover = |side: usize| {
-            let corner = [[left, top], [left, top], [right, top], [left, bottom]][side].into();
-            let inwards = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y][side] * f64::from(distance[side % 2]);
-            let along = size * if side.is_multiple_of(2) { DVec2::Y } else { DVec2::X };
-            let opacity = |share: f32| strength[side] * (1.0 - share * share * (3.0 - 2.0 * share));
-            soft([corner, along, inwards], 1, self.palette.background, |_, share| opacity(share))
-        };
-        let items = (0..4).filter(|&side| strength[side] > 0.0).map(cover).collect();
-        let pixels = |solid: &Vec<DVec3>| solid.iter().filter_map(|&at| self.pixel(at).map(point)).collect();
-        Some(Item::Clip { path: path_of(solids.iter().map(pixels)), items })
     }
 
     /// A point of the panel (m).

@@ -34,6 +34,10 @@ pub(super) struct Draft<'a> {
     pub(super) viewport: Rectangle,
     /// The part of it without words.
     pub(super) clear: Rectangle,
+    /// The part of it for curves.
+    pub(super) room: Rectangle,
+    /// The runs at the same moment.
+    pub(super) others: &'a [RunFrame],
     pub(super) scale: Scale,
     pub(super) lens: Lens,
     /// Unit vector towards the key light.
@@ -47,13 +51,13 @@ pub(super) struct Draft<'a> {
     /// The points of the skin (m); empty if not all nodes are known.
     pub(super) skin: Vec<DVec3>,
     /// The boxes around its parts (px).
-    boxes: OnceCell<Vec<PixelBox>>,
+    pub(super) boxes: OnceCell<Vec<PixelBox>>,
     /// The shown field.
     pub(super) shades: Option<Shades>,
     /// Its places on the colour scale at the nodes, if lines or discs show them.
     pub(super) of_nodes: Vec<f32>,
     /// The colours of bodies, visible as lines.
-    lines_of_bodies: [Colour; BODIES],
+    pub(super) lines_of_bodies: [Colour; BODIES],
     /// Length of an element's edge at the body's distance (px).
     pub(super) element: f64,
     /// Whether the body lies in the plane.
@@ -103,6 +107,7 @@ impl<'a> Draft<'a> {
             None => places_of_bodies(bodies.assembly()),
         };
         let flat = body.dimension() == Dimension::Plane;
+        let clear = layout::clear_of_words(viewport, view, scale);
         let palette = if greyed { composer.palette.greyed() } else { composer.palette };
         Self {
             composer,
@@ -112,7 +117,9 @@ impl<'a> Draft<'a> {
             run,
             framing,
             viewport,
-            clear: layout::clear_of_words(viewport, view, scale),
+            clear,
+            room: between(viewport, clear),
+            others: &[],
             scale,
             key: key_light(&lens),
             origin: framing.target,
@@ -143,8 +150,7 @@ impl<'a> Draft<'a> {
 
     /// The part of the panel without words, over its whole width.
     pub(super) fn between_words(&self) -> Rectangle {
-        let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear);
-        [left, top, width, height]
+        between(self.viewport, self.clear)
     }
 
     /// The sides of a part of the picture and of some room around it, where lines are cut: their ends are not seen (px).
@@ -215,6 +221,11 @@ impl PixelBox {
         }
         all
     }
+}
+
+/// A part of a picture with the width of one rectangle and the height of another.
+fn between([left, _, width, _]: Rectangle, [_, top, _, height]: Rectangle) -> Rectangle {
+    [left, top, width, height]
 }
 
 /// The place of each node among the colours of bodies; empty for one body.

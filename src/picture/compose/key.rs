@@ -1,25 +1,17 @@
 //! The contents of the key of a picture: colours, lines, marks and arrows.
 
 use super::Composer;
+use super::overlay::{self, KeyPlace};
 use crate::look::{BODIES, ColourScale};
-use crate::picture::layout::{Rectangle, Scale};
-use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
+use crate::picture::legend::{Bar, Sample, SampleKind};
 use crate::picture::wire::spring_strain;
-use crate::picture::{Framing, arrows, number};
 use crate::runner::{Frame, RunFrame};
-use std::borrow::Cow;
 
 impl Composer<'_> {
-    /// Samples of arrows, lines and marks with their meanings.
-    pub(super) fn samples(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> Vec<Sample<'_>> {
-        let arrow = self.scene.view.visible.displacements.then(|| self.key_arrow(legend, viewport, seen, scale));
-        let ghost =
-            self.ghost().map(|(name, colour)| Sample { names: vec![name.into()], kind: SampleKind::Ghost(colour) });
-        let path: Vec<_> = self.path_names().into_iter().map(Cow::from).collect();
-        let path = Some(path).filter(|names| !names.is_empty());
-        let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
-        let path = path.map(|names| Sample { names, kind: SampleKind::Path(colours) });
-        arrow.into_iter().chain(ghost).chain(path).chain(self.samples_of_bodies()).collect()
+    /// Samples of overlays and bodies with their meanings.
+    pub(super) fn samples(&self, place: &KeyPlace<'_>) -> Vec<Sample<'_>> {
+        let explained = overlay::all().filter(|overlay| overlay.is_explained(&self.scene.view));
+        explained.filter_map(|overlay| overlay.sample(self, place)).chain(self.samples_of_bodies()).collect()
     }
 
     /// A sample of each colour of bodies, with the names of its bodies.
@@ -63,15 +55,5 @@ impl Composer<'_> {
             return Vec::new();
         }
         self.springs[run.run].iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
-    }
-
-    /// The key's arrow with its length in words.
-    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> Sample<'_> {
-        let pixels = self.pixels_a_metre(viewport, seen, scale);
-        let times = self.scene.view.arrow_scale;
-        let metres = number::round_below(legend.arrow_length() / (pixels * times));
-        let size = arrows::size(pixels * self.scene.view.side, scale.unit);
-        let name = format!("displacement {}", number::round_length(metres, self.extent));
-        Sample { names: vec![name.into()], kind: SampleKind::Arrow([metres * pixels * times, size]) }
     }
 }

@@ -6,14 +6,11 @@ mod cameras;
 mod cut;
 mod draft;
 mod figure;
-mod ghost;
-mod grip;
 mod ground;
 mod key;
 mod numbers;
+pub(super) mod overlay;
 mod panel;
-mod paths;
-mod plane_body;
 mod plane_marks;
 mod region;
 mod words;
@@ -41,6 +38,7 @@ use draft::Draft;
 pub(crate) use figure::compose_figure;
 use glam::DVec3;
 use numbers::NumberPart;
+use overlay::KeyPlace;
 use std::sync::OnceLock;
 use words::{PageWords, Words};
 pub(crate) use words::{left_out, type_left_out};
@@ -192,16 +190,15 @@ impl<'a> Composer<'a> {
         }
         let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
         if let Some(((legend, ([_, top, width, _], &panel)), framing)) = legend.zip(place).zip(framings.first()) {
-            let samples = self.samples(legend, panel, framing, scale);
+            let samples = self.samples(&KeyPlace { legend, viewport: panel, framing, scale });
             legend.draw(&mut writer, [width, top], &samples, self.bar(frame).as_ref());
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
         let curves = std::mem::take(&mut writer.curves);
         for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
-            let draft = Draft::new(self, panel, run, framing, scale);
-            draft.ghost(&frame.runs, draft.between_words(), &mut writer.curves);
-            draft.paths(&self.traced, draft.between_words(), &mut writer.curves);
+            let draft = Draft { others: &frame.runs, ..Draft::new(self, panel, run, framing, scale) };
             panels.push(draft.panel(&mut under, &mut marks));
+            draft.overlays(&mut marks, &mut writer.curves);
         }
         marks.extend(hairlines);
         writer.curves.extend(curves);

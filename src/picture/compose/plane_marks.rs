@@ -1,16 +1,15 @@
-//! Marks of bodies in the plane: nodes, ring arrows for the orientation of elements, and floors seen from the side.
+//! Marks of bodies in the plane: ring arrows for the orientation of elements, and floors seen from the side.
 
 use super::draft::{Draft, PixelBox};
 use crate::colour::Colour;
 use crate::look::FloorStyle;
 use crate::picture::Item;
 use crate::picture::chart::spread;
-use crate::picture::field::{self, NOWHERE};
-use crate::picture::layout::Scale;
+use crate::picture::flat::soft;
 use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, MARGIN, RING, SHORT, STRONG, THIN, TICK};
 use crate::picture::narrow::narrow;
 use crate::picture::obstacle::{HalfSpace, half_space};
-use crate::picture::page::{Image, Path, Step, direction, point, winding};
+use crate::picture::page::{Path, Step, direction, point, winding};
 use crate::picture::plane::{WHOLE, clipped, from_side, is_inside, sides};
 use crate::picture::shell::is_broken;
 use crate::sim::Motion;
@@ -36,8 +35,6 @@ const FADING_SIGN: f64 = 0.2;
 const FADING_LEADER: [f64; 2] = [0.04, 0.12];
 /// Bodies of more elements have no signs, which would hide the elements.
 const MOST_SIGNS: usize = 16;
-/// The largest radius of nodes in lengths of an element's edge.
-const CROWDED: f64 = 0.14;
 /// Floors whose normal rises or falls less than this are walls.
 const STEEP: f64 = 0.5;
 
@@ -131,22 +128,6 @@ impl Draft<'_> {
             turned_over.iter().map(|(place, _)| *place).partition(|place| place.1 < disc);
         self.callouts(covered, marks);
         roomy.into_iter().for_each(|(middle, _)| self.alarm_arrow(middle, 1.0, marks));
-    }
-
-    /// Nodes, above the arrows, in the colours of a field unless surfaces show it.
-    pub(super) fn nodes(&self, marks: &mut Vec<Item>) {
-        let visible = self.scene.view.visible;
-        if !visible.nodes || self.diverged {
-            return;
-        }
-        let radius = node_radius(self.scale, self.element);
-        for (node, &point) in self.position.iter().enumerate() {
-            let place = self.of_nodes.get(node).copied().filter(|&place| place != NOWHERE && !visible.surfaces);
-            let colour = place.map_or(self.palette.node, |place| field::colour(self.ramp(), place));
-            if let Some(pixel) = self.pixel(point).filter(|&pixel| self.holds(pixel, radius)) {
-                marks.push(Item::rimmed(pixel, radius, colour, self.palette.edge));
-            }
-        }
     }
 
     /// The arrow of an element that is not turned over, unless a turned-over one covers it.
@@ -257,28 +238,9 @@ fn shadow(sides: [DVec2; 3], colour: Colour) -> Item {
     Item::part("shadow", [soft(sides, columns, colour, |x, down| SHADOW * across(x) * (1.0 - down).powi(2))])
 }
 
-/// Pixels from a corner along two sides (px), with an opacity that depends on their place, from 0 to 1 along each.
-pub(super) fn soft(sides: [DVec2; 3], columns: u32, [r, g, b]: Colour, opacity: impl Fn(f32, f32) -> f32) -> Item {
-    let place = sides.map(point);
-    let size = [columns, place[2].length().ceil().max(1.0) as u32];
-    let mut pixels = Vec::with_capacity(4 * (size[0] * size[1]) as usize);
-    for y in 0..size[1] {
-        for x in 0..size[0] {
-            let [u, v] = [(x, size[0]), (y, size[1])].map(|(at, all)| narrow((f64::from(at) + 0.5) / f64::from(all)));
-            pixels.extend([r, g, b, (255.0 * opacity(u, v).clamp(0.0, 1.0)).round() as u8]);
-        }
-    }
-    Item::Image(Image { size, pixels, place })
-}
-
 /// A place near a given one (px), closer to the border of pixels, where a line is sharp.
 fn sharpened(place: f64) -> f64 {
     place - libm::sin(TAU * place) / TAU
-}
-
-/// The radius of a node for elements with edges of a length (px), smaller than usual if they are short.
-pub(super) fn node_radius(scale: Scale, element: f64) -> f64 {
-    (CLOSE * scale.line()).min((CROWDED * element).max(THIN))
 }
 
 /// The distance of a point from a polygon; 0 inside it.

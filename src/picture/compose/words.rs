@@ -1,7 +1,8 @@
 //! The words of a scene's pictures: their places, which are the same in all frames, and words without room.
 
 use super::Composer;
-use crate::look::{Ghost, Labels, LineStyle, Palette, View};
+use super::overlay::have_colours_of_runs;
+use crate::look::{Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, BETWEEN_PARTS, Heading, Writer};
 use crate::picture::chart::{event, style};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
@@ -109,8 +110,8 @@ impl<'a> Words<'a> {
     fn sample(&self, run: usize, has_chart: bool) -> Option<LineStyle> {
         let view = self.view();
         let has_arrows = view.visible.displacements && view.colour.is_none();
-        let has_ghost = matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty();
-        let run = self.scene.runs.get(run).filter(|_| view.labels.legend && (has_chart || has_arrows || has_ghost))?;
+        let has_curves = have_colours_of_runs(view);
+        let run = self.scene.runs.get(run).filter(|_| view.labels.legend && (has_chart || has_arrows || has_curves))?;
         let line = run.line(self.palette);
         // Without a chart, only colours count.
         Some(if has_chart { style(&view.charts, line) } else { LineStyle { dash: &[], ..line } })

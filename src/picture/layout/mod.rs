@@ -20,6 +20,7 @@
 pub(super) mod steps;
 pub(super) mod tree;
 
+use super::legend::Legend;
 use crate::look::{Labels, View, print};
 use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, NEAR, ROW, SHORT, SMALL, TALL_ROW, TILE};
 use tree::{Node, Place, Solved};
@@ -411,7 +412,7 @@ impl Scale {
     fn within(self, view: &View) -> Self {
         // The outermost words keep the margins of the picture.
         let above = if view.title.is_empty() { MARGIN } else { BESIDE };
-        let has_parts_below = !view.charts.is_empty() || view.wants_legend() || !view.caption.is_empty();
+        let has_parts_below = !view.charts.is_empty() || Legend::is_wanted(view) || !view.caption.is_empty();
         let below = if has_parts_below { BESIDE } else { SHORT + BESIDE };
         Self { least: SMALL * unit(view) * view.look.text_scale.min(1.0), edges: [above, below], ..self.with(view) }
     }

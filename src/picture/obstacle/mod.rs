@@ -1,5 +1,5 @@
 //! Obstacles. In space spheres, capsules and boxes are lit solids; plates and all floors but the ground are transparent
-//! slabs, so that bodies stay visible behind them. In the plane everything is flat.
+//! slabs, so that bodies stay visible behind them. In the plane all are polygons.
 
 mod half_space;
 mod near;
@@ -11,7 +11,6 @@ mod solid;
 mod space;
 
 pub(super) use half_space::{HalfSpace, half_space};
-pub(super) use plane::PlaneObstacles;
 pub(super) use space::Staging;
 
 use super::camera::Lens;

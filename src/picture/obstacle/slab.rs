@@ -3,6 +3,7 @@
 use super::half_space::{HalfSpace, clipped_line, clipped_polygon};
 use super::shapes::{FACES, corners, edges};
 use super::space::Staging;
+use crate::picture::layout::steps::{CLOSE, FREE};
 use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
@@ -88,7 +89,10 @@ impl Staging<'_> {
             let going = self.site.going(obstacle, middle, half.max_element());
             // The arrow is on the side without the body.
             let arriving = going.velocity.dot(out) > 0.0;
-            pointers.draw(middle - THICKNESS * self.site.extent * out, going, arriving, 3.0, marks);
+            // In the plane a plate is a line.
+            let [thickness, gap] =
+                if self.site.lens.orthographic { [0.0, CLOSE] } else { [THICKNESS * self.site.extent, FREE] };
+            pointers.draw(middle - thickness * out, going, arriving, gap, marks);
         }
     }
 

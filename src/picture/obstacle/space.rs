@@ -1,4 +1,4 @@
-//! All obstacles of a panel in space.
+//! All obstacles of a panel.
 
 use super::half_space::HalfSpace;
 use super::shapes::{corners, rod};
@@ -9,7 +9,7 @@ use crate::runner::history::NearObstacles;
 use crate::sim::Shape;
 use glam::DVec3;
 
-/// The data for the obstacles of one panel in space.
+/// The data for the obstacles of one panel.
 pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) site: Site<'a>,
     /// Distance of the grid's lines (sides).
@@ -22,6 +22,8 @@ pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) skin: Option<&'a Skin>,
     /// The triangles of nodes that are left of it, if elements are broken.
     pub(in crate::picture) left: Option<Vec<[u32; 3]>>,
+    /// The width of rims in the plane (m).
+    pub(in crate::picture) rim: f64,
     /// Unit of soft distances (m).
     pub(in crate::picture) soft: f64,
     /// The box around the nodes at the start (m).
@@ -33,6 +35,9 @@ pub(in crate::picture) struct Staging<'a> {
 impl Staging<'_> {
     /// All obstacles but the ground.
     pub(in crate::picture) fn draw(&self, lines: &mut Vec<Line>) -> (Obstacles, Staged) {
+        if self.site.lens.orthographic {
+            return self.flat();
+        }
         let (mut solids, mut staged, mut slabs) = (Vec::new(), Staged::default(), Vec::new());
         let floors: Vec<_> = self.site.obstacles.iter().map(|obstacle| obstacle.floor(self.site.time)).collect();
         for (at, obstacle) in self.site.obstacles.iter().enumerate() {

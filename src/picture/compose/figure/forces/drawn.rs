@@ -7,7 +7,7 @@ use crate::picture::arrows::{arrow, bare, outlined};
 use crate::picture::caption::Writer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::compose::figure::labels::LabelPlaces;
-use crate::picture::compose::plane_body::path_of;
+use crate::picture::flat::path_of;
 use crate::picture::ghost::DASH;
 use crate::picture::layout::steps::{APART, CLOSE, FREE, NEAR, SMALL, THIN, TICK};
 use crate::picture::layout::tree::Place;

@@ -20,11 +20,12 @@ mod headings;
 mod rows;
 mod sheet_layout;
 
-use crate::look::{ColourScale, Ghost, Labels, View, print};
+use crate::look::{ColourScale, Labels, View, print};
 use crate::picture::caption::Writer;
 use crate::picture::chart::Stack;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
+use crate::picture::compose::overlay::{KeyPlace, have_colours_of_runs};
 use crate::picture::layout::steps::{FREE, NEAR};
 use crate::picture::layout::{self, Part, Room, Scale, Wanted};
 use crate::picture::legend::Legend;
@@ -58,7 +59,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     let most = write_below(&mut writer, layout, &composers, sheet, moments);
     if let Some((legend, [_, top, ..])) = plan.legend.zip(layout.page.get(Part::Legend)) {
         let first = &composers[0];
-        let samples = first.samples(legend, layout.tile(0, 0), &framings[0], layout.tile_scale);
+        let (viewport, scale) = (layout.tile(0, 0), layout.tile_scale);
+        let samples = first.samples(&KeyPlace { legend, viewport, framing: &framings[0], scale });
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
@@ -74,12 +76,12 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
     for ([row, column], run) in cells(moments) {
         let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[column]);
-        let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
-        let [left, top, width, height] = draft.viewport;
+        let [left, top, width, height] = layout.tile(row, column);
         let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
-        draft.ghost(&moments.others[row][column], room, &mut writer.curves);
-        draft.paths(&composer.traced, room, &mut writer.curves);
+        let draft = Draft::new(composer, [left, top, width, height], run, framing, layout.tile_scale);
+        let draft = Draft { room, others: &moments.others[row][column], ..draft };
         panels.push(draft.panel(&mut under, &mut marks));
+        draft.overlays(&mut marks, &mut writer.curves);
         // Surfaces without width are invisible.
         let ends = cameras::collapsed(&draft);
         writer.curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
@@ -135,8 +137,7 @@ impl Plan {
         let legend = Legend::of(&composers[0].scene.view, scale);
         let has_charts = !sheet.charts.is_empty();
         let charts = has_charts.then(|| charts::stack(sheet, &moments.histories, writer, width));
-        let shows_runs = |view: &View| matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty();
-        let with_sample = has_charts || composers.iter().any(|composer| shows_runs(&composer.scene.view));
+        let with_sample = has_charts || composers.iter().any(|composer| have_colours_of_runs(&composer.scene.view));
         let labels = RowLabels::new(sheet, writer, with_sample, width);
         let wanted = Wanted {
             titles: titles.each_ref().map(Vec::len),

@@ -1,6 +1,7 @@
 //! Marks on nodes that grips hold or drag.
 
-use super::draft::Draft;
+use super::Overlay;
+use crate::picture::compose::draft::Draft;
 use crate::picture::layout::steps::{CLOSE, FREE, RING, THIN};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{self, Path};
@@ -19,29 +20,33 @@ const INNER: f32 = 0.75;
 /// The opacity of the mark of a hidden node.
 const HIDDEN: f64 = 0.38;
 
-impl Draft<'_> {
-    /// Marks all nodes that are held at the panel's time.
-    pub(super) fn grips(&self, marks: &mut Vec<Item>) {
-        let time = self.run.snapshot.time;
-        let held: Vec<_> = self.scene.runs[self.run.run].grips.iter().filter(|grip| grip.holds(time)).collect();
-        if self.diverged || held.is_empty() || self.position.is_empty() {
+/// Marks on all nodes that are held at a panel's time.
+pub(super) struct Grips;
+
+impl Overlay for Grips {
+    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
+        let time = draft.run.snapshot.time;
+        let held: Vec<_> = draft.scene.runs[draft.run.run].grips.iter().filter(|grip| grip.holds(time)).collect();
+        if draft.diverged || held.is_empty() || draft.position.is_empty() {
             return;
         }
-        let visible = self.bodies.cage().visible(&self.position, &self.lens);
+        let visible = draft.bodies.cage().visible(&draft.position, &draft.lens);
         for grip in held {
-            let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|&node| node < self.position.len());
+            let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|&node| node < draft.position.len());
             let nodes: Vec<_> = nodes.collect();
             for &node in &nodes {
-                self.mark(self.position[node], HIDDEN + (1.0 - HIDDEN) * visible[node], marks);
+                draft.mark(draft.position[node], HIDDEN + (1.0 - HIDDEN) * visible[node], marks);
             }
             if grip.motion != Motion::Still {
-                let middle = nodes.iter().map(|&node| self.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
-                let gap = PIN[usize::from(self.flat)] + FREE;
-                self.pointers(self.between_words()).draw(middle, self.going(grip), false, gap, marks);
+                let middle = nodes.iter().map(|&node| draft.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
+                let gap = PIN[usize::from(draft.flat)] + FREE;
+                draft.pointers(draft.between_words()).draw(middle, draft.going(grip), false, gap, marks);
             }
         }
     }
+}
 
+impl Draft<'_> {
     /// The motion of the middle of dragged nodes.
     fn going(&self, grip: &Grip) -> Going {
         let (half, now) = (0.25 / self.scene.frames_per_second, self.run.snapshot.time);

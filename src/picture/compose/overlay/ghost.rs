@@ -1,0 +1,89 @@
+//! The outline of another state over the body of a panel.
+
+use super::{KeyPlace, Overlay};
+use crate::colour::Colour;
+use crate::look::{Ghost, View};
+use crate::picture::Item;
+use crate::picture::compose::Composer;
+use crate::picture::compose::draft::Draft;
+use crate::picture::ghost;
+use crate::picture::layout::steps::{STRONG, TICK};
+use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::narrow::narrow;
+use crate::picture::page::Pen;
+use crate::sim::Status;
+use glam::DVec3;
+
+/// The opacity of the casing of outlines.
+const HALO_ALPHA: f64 = 0.65;
+
+/// The outline of the rest shape, or of the body of another run at the same moment.
+pub(super) struct GhostOutline;
+
+impl Overlay for GhostOutline {
+    fn is_explained(&self, view: &View) -> bool {
+        view.ghost.is_some()
+    }
+
+    fn has_colours_of_runs(&self, view: &View) -> bool {
+        matches!(view.ghost, Some(Ghost::Run(_)))
+    }
+
+    fn sample<'c>(&self, composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Option<Sample<'c>> {
+        let (name, colour) = look(composer)?;
+        Some(Sample { names: vec![name.into()], kind: SampleKind::Ghost(colour) })
+    }
+
+    fn draw(&self, draft: &Draft<'_>, curves: &mut Vec<Item>) {
+        let Some((_, colour)) = look(draft.composer) else { return };
+        match draft.scene.view.ghost {
+            Some(Ghost::Rest) => {
+                let bodies = &draft.scene.runs[draft.run.run].bodies;
+                draft.outline(&bodies.placed(&draft.run.snapshot.placements), colour, curves);
+            }
+            Some(Ghost::Run(run)) if run != draft.run.run => {
+                let other = draft.others.iter().find(|other| other.run == run);
+                if let Some(other) = other.filter(|other| other.snapshot.status == Status::Ok) {
+                    draft.outline(&other.snapshot.position, colour, curves);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The name and the colour of the scene's ghosts, if it has any.
+fn look<'c>(composer: &'c Composer<'_>) -> Option<(&'c str, Colour)> {
+    Some(match composer.scene.view.ghost? {
+        Ghost::Rest => ("rest shape, best fit", composer.palette.second_text),
+        Ghost::Run(run) => (&composer.scene.runs[run].name, composer.scene.runs[run].line(&composer.palette).colour),
+    })
+}
+
+impl Draft<'_> {
+    /// The outline of the body with its nodes at other positions (m).
+    fn outline(&self, position: &[DVec3], colour: Colour, curves: &mut Vec<Item>) {
+        if self.diverged || position.len() != self.body.len() {
+            return;
+        }
+        let skin = &self.bodies.skin;
+        let node = |at: u32| skin.nodes[at as usize];
+        let mut triangles: Vec<_> = skin.triangles.iter().map(|corners| corners.map(node)).collect();
+        // All nodes, and after them the points of carried surfaces.
+        let mut points = position.to_vec();
+        for fine in &skin.fine {
+            let first = points.len() as u32;
+            triangles.extend(fine.surface.triangles.iter().map(|triangle| triangle.map(|point| first + point)));
+            fine.place(position, &mut points);
+        }
+        let pixels = points.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
+        let Some(pixels) = pixels else { return };
+        let bars = self.bodies.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
+        let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>(), self.around(self.room));
+        let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));
+        let dash = ghost::DASH.map(|length| narrow(length * self.scale.line())).to_vec();
+        let casing = Item::stroke(path.clone(), Pen::solid(halo), (self.composer.palette.background, HALO_ALPHA));
+        let line = Item::stroke(path, Pen { dash, round: false, width }, colour);
+        curves.push(Item::inside(self.room, vec![casing, line]));
+    }
+}

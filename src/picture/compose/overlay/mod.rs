@@ -1,0 +1,65 @@
+//! Overlays: marks and curves over the bodies of panels, with their samples in the key. A new one is one file here, one line
+//! in [`MARKS`] or [`CURVES`], and its key in [`View`].
+
+mod displacements;
+mod ghost;
+mod grips;
+mod paths;
+
+pub(super) use displacements::bearers;
+
+use super::Composer;
+use super::draft::Draft;
+use crate::look::View;
+use crate::picture::layout::{Rectangle, Scale};
+use crate::picture::legend::{Legend, Sample};
+use crate::picture::{Framing, Item};
+
+/// The overlays below hairlines and the words of panels, in the order in which they are drawn.
+pub(super) const MARKS: [&dyn Overlay; 2] = [&grips::Grips, &displacements::Displacements];
+/// The overlays above them.
+pub(super) const CURVES: [&dyn Overlay; 2] = [&ghost::GhostOutline, &paths::Paths];
+
+/// A kind of overlay.
+pub(super) trait Overlay {
+    /// Whether the key of a view explains it.
+    fn is_explained(&self, _: &View) -> bool {
+        false
+    }
+
+    /// Whether it has the colours of runs in a view.
+    fn has_colours_of_runs(&self, _: &View) -> bool {
+        false
+    }
+
+    /// Its sample in the key, if it is explained.
+    fn sample<'c>(&self, _: &'c Composer<'_>, _: &KeyPlace<'_>) -> Option<Sample<'c>> {
+        None
+    }
+
+    /// Draws it over a panel.
+    fn draw(&self, draft: &Draft<'_>, items: &mut Vec<Item>);
+}
+
+/// A key, and the first panel that it explains.
+pub(in crate::picture) struct KeyPlace<'a> {
+    pub(super) legend: Legend,
+    pub(super) viewport: Rectangle,
+    pub(super) framing: &'a Framing,
+    pub(super) scale: Scale,
+}
+
+/// All overlays, in the order of their samples.
+pub(super) fn all() -> impl Iterator<Item = &'static dyn Overlay> {
+    MARKS.into_iter().chain(CURVES)
+}
+
+/// The number of overlays that the key of a view explains.
+pub(in crate::picture) fn explained(view: &View) -> usize {
+    all().filter(|overlay| overlay.is_explained(view)).count()
+}
+
+/// Whether overlays of a view have the colours of runs.
+pub(super) fn have_colours_of_runs(view: &View) -> bool {
+    all().any(|overlay| overlay.has_colours_of_runs(view))
+}
