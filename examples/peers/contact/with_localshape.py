@@ -13,8 +13,7 @@ def record(scene, cubes=False, step=None):
     options = [f"time.step={step}"] if step else []
     if cubes:  # The elastic constant of a cube is half of E times the side.
         options += [f"run[0].model.damping={scene.damping_time * scene.young * scene.side / 2}"]
-        bodies = scene.body.max() + 1
-        options += [f"body{f'[{body}]' if bodies else ''}.lattice.elements=cells" for body in range(bodies)]
+        options += [f"body[{body}].lattice.elements=cells" for body in range(scene.body.max() + 1)]
     folder = Path(tempfile.mkdtemp())
     options = [word for option in options for word in ("--set", option)]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
