@@ -49,7 +49,8 @@ pub struct View {
     #[serde(serialize_with = "open")]
     #[schemars(with = "ColourFile")]
     pub colour: Option<ColourScale>,
-    /// Scale of the arrows of displacements. At 1 an arrow ends at its node.
+    /// Scale of the arrows of displacements and contacts. At 1 an arrow of a displacement ends at its node, and one of a force as large as the
+    /// mean weight of bodies on Earth is as long as half of the largest body.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
@@ -272,6 +273,9 @@ words! {
         /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on
         /// the surface that face the viewer, and for at most 500.
         displacements,
+        /// Dots where bodies touch, and arrows for the mean force of each obstacle and body on each body, in the interval of the row
+        /// of `diagnostics.csv`.
+        contacts,
         /// The edges of the elements that carry a fine surface, as lines over it. Surfaces are drawn, too.
         cage,
     }

@@ -125,14 +125,13 @@ impl Exerted<'_> {
         let own = |body: usize| of.iter().position(|&of| of == body).map(Side::Body);
         let several = scene.bodies.iter().enumerate().filter(|_| scene.bodies.len() > 1);
         let sides = obstacles.chain(several.map(|(at, body)| (own(at), &body.name)));
-        let quantities: [(&str, fn(&ContactForce) -> DVec3); 2] =
-            [("force", |one| one.force), ("torque", |one| one.torque)];
         let of_side = |(from, name): (Option<Side>, &String)| {
             let found = forces.iter().filter(move |one| Some(one.from) == from && on.is_none_or(|on| one.on == on));
             let name = name.clone();
             let is_known = from.is_some() && !forces.is_empty();
-            quantities.into_iter().flat_map(move |(key, quantity)| {
-                let sum = if is_known { found.clone().map(quantity).sum() } else { DVec3::NAN };
+            ["force", "torque"].into_iter().enumerate().flat_map(move |(at, key)| {
+                let each = found.clone().map(|one| [one.force, one.torque][at]);
+                let sum = if is_known { each.sum() } else { DVec3::NAN };
                 let head = format!("{key} of {name}");
                 ["x", "y", "z"]
                     .into_iter()

@@ -26,9 +26,9 @@ impl Scene {
         needed.then_some(&view.charts[..])
     }
 
-    /// Whether charts tell of contact, so that its forces are kept.
+    /// Whether charts or marks tell of contact, so that its forces are kept.
     pub(crate) fn keeps_contact(&self) -> bool {
-        self.view.charts.iter().any(|chart| chart.is_of_contact())
+        self.view.visible.contacts || self.view.charts.iter().any(|chart| chart.is_of_contact())
     }
 
     /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.

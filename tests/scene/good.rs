@@ -49,6 +49,7 @@ fn shipped_scenes_have_no_warnings() {
         "tests/golden/primitives",
         "examples/golden-tests/scenes",
         "examples/peers",
+        "examples/peers/contact",
     ] {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.extension().is_some_and(|ending| ending == "toml") {

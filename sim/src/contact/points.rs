@@ -20,11 +20,13 @@ pub struct ContactPoint {
     pub at: DVec3,
 }
 
+/// Places of a pair that are nearer than so many times the distance that is kept are one: the fifth part of a usual element.
+const SAME: f64 = 8.0;
 /// What touches is at most this share of the distance that is kept farther apart than that.
 pub(super) const SLACK: f64 = 0.1;
 
 impl Stage {
-    /// Where surfaces touch at a time (s), with positions of all nodes (m), in the order of pairs: each place once.
+    /// Where surfaces touch at a time (s), with positions of all nodes (m), in the order of pairs.
     pub(crate) fn points(&self, position: &[DVec3], time: f64) -> Vec<ContactPoint> {
         let mut obstacles = [const { Vec::new() }; 3];
         self.place_obstacles(Interval { begin: time, end: time, step: 1.0 }, &mut obstacles);
@@ -56,7 +58,7 @@ impl Stage {
             // Of one surface the nodes of both features are mixed.
             let own = terms.iter().filter(|term| if on == other { term.weight > 0.0 } else { term.node < second });
             let at = own.map(|term| places.node(term.node) * term.weight).sum::<DVec3>();
-            let is_new = |point: &ContactPoint| point.at.distance(at) > pair.law.gap;
+            let is_new = |point: &ContactPoint| point.at.distance(at) > SAME * pair.law.gap;
             if found[first..].iter().all(is_new) {
                 found.push(ContactPoint { from: self.side(other), on, at });
             }

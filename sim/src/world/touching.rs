@@ -66,10 +66,12 @@ impl World {
     }
 
     /// The numbers of pairs of facets that cross each other in the present state, of surfaces that meet: of each two bodies, a body and an
-    /// obstacle, or a body with itself, where there are some. In the plane facets are sides. `None` if no surfaces meet.
+    /// obstacle, or a body with itself, where there are some. In the plane facets are sides. `None` in a world whose
+    /// surfaces do not meet ([`Surroundings::contacts`](crate::Surroundings::contacts)).
     pub fn crossings(&self) -> Option<Vec<([Side; 2], usize)>> {
-        let time = self.system.interval(self.state.steps).begin;
-        Some(self.system.contact.as_ref()?.crossings(&self.state.position, time))
+        self.system.surroundings.contacts.as_ref()?;
+        let (stage, time) = (self.system.contact.as_ref(), self.system.interval(self.state.steps).begin);
+        Some(stage.map_or_else(Vec::new, |stage| stage.crossings(&self.state.position, time)))
     }
 
     /// What diagnostics tell of contact, of each body: the mean force and its torque, and the crossings of its own and those that it shares

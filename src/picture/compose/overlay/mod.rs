@@ -1,6 +1,7 @@
 //! Overlays: marks and curves over the bodies of panels, with their samples in the key. A new one is one file here, one line
 //! in [`MARKS`] or [`CURVES`], and its key in [`View`].
 
+mod contacts;
 mod displacements;
 mod ghost;
 mod grips;
@@ -16,7 +17,7 @@ use crate::picture::legend::{Legend, Sample};
 use crate::picture::{Framing, Item};
 
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
-pub(super) const MARKS: [&dyn Overlay; 2] = [&grips::Grips, &displacements::Displacements];
+pub(super) const MARKS: [&dyn Overlay; 3] = [&grips::Grips, &displacements::Displacements, &contacts::Contacts];
 /// The overlays above them.
 pub(super) const CURVES: [&dyn Overlay; 2] = [&ghost::GhostOutline, &paths::Paths];
 

@@ -1,0 +1,76 @@
+//! Contacts: a dot where bodies touch, and an arrow for the mean force of each obstacle and body on each body.
+
+use super::{KeyPlace, Overlay};
+use crate::look::View;
+use crate::picture::compose::Composer;
+use crate::picture::compose::draft::Draft;
+use crate::picture::layout::steps::{FREE, RING};
+use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::order::farthest_first;
+use crate::picture::{Item, arrows, number};
+use crate::scene::Scene;
+use crate::sim::{ContactForce, Diagnostic, Side};
+use glam::DVec3;
+
+/// Radius of a dot, in radii of a ring, and at most in lengths of an element; its least one (px).
+const DOT: [f64; 2] = [0.5, 0.09];
+const LEAST: f64 = 0.6;
+/// A force as large as the mean weight of bodies on Earth has an arrow as long as this share of the size of the largest body.
+const LENGTH: f64 = 0.5;
+/// Standard gravity (m/s²).
+const EARTH: f64 = 9.806_65;
+
+/// Dots and arrows of contact.
+pub(super) struct Contacts;
+
+impl Overlay for Contacts {
+    fn is_explained(&self, view: &View) -> bool {
+        view.visible.contacts
+    }
+
+    /// An arrow with its force in words.
+    fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
+        let view = &composer.scene.view;
+        let pixels = composer.pixels_a_metre(place.viewport, place.framing, place.scale);
+        let length = pixels * metres_a_newton(composer.scene);
+        let force = number::round_below(place.legend.arrow_length() / length);
+        let size = arrows::size(pixels * view.side, place.scale.unit);
+        let names = vec![format!("force {}", number::value(Diagnostic::ContactForce, force, composer.extent)).into()];
+        Some(Sample { names, kind: SampleKind::Arrow([force * length, size]) })
+    }
+
+    /// Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. Dots lie above all arrows.
+    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
+        let (snapshot, palette) = (&draft.run.snapshot, &draft.composer.palette);
+        if !draft.scene.view.visible.contacts || draft.diverged {
+            return;
+        }
+        let size = arrows::size(draft.element, draft.scale.unit);
+        let metres = metres_a_newton(draft.scene);
+        let arrows = snapshot.contact_forces.iter().filter_map(|&ContactForce { from, on, force, .. }| {
+            let own = snapshot.contact_points.iter().filter(|point| {
+                let is_back = point.from == Side::Body(on) && from == Side::Body(point.on);
+                (point.from, point.on) == (from, on) || is_back
+            });
+            let (count, sum) = own.fold((0, DVec3::ZERO), |(count, sum), point| (count + 1, sum + point.at));
+            let start = (count > 0).then(|| sum / f64::from(count))?;
+            let end = start + force * metres;
+            let (to, depth) = draft.lens.project(end)?;
+            let (ends, part) = arrows::inside([draft.pixel(start)?, to.into()], draft.clear, (RING * size).max(FREE))?;
+            Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(part)?))
+        });
+        marks.extend(farthest_first(arrows.collect()));
+        let radius = (DOT[0] * RING * size).min(DOT[1] * draft.element).max(LEAST);
+        let pixels = snapshot.contact_points.iter().filter_map(|point| draft.pixel(point.at));
+        let dots = pixels.filter(|&pixel| draft.holds(pixel, radius));
+        marks.extend(dots.map(|pixel| Item::rimmed(pixel, radius, palette.pointer, palette.background)));
+    }
+}
+
+/// The length of arrows (m) for each newton.
+fn metres_a_newton(scene: &Scene) -> f64 {
+    let masses = scene.bodies.iter().map(|body| body.body.mass().iter().sum::<f64>());
+    let mass = masses.sum::<f64>() / scene.bodies.len() as f64;
+    let size = scene.bodies.iter().map(|body| body.body.extent()).fold(0.0, f64::max);
+    scene.view.arrow_scale * LENGTH * size / (mass * EARTH)
+}
