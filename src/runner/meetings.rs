@@ -115,7 +115,7 @@ pub(crate) fn crossing(scene: &Scene, frame: &RunFrame) -> Option<String> {
     let names: Vec<_> = crossed.map(|(&body, _)| &scene.bodies[body].name).collect();
     let (names, time) = (list(&names, "and", |name| format!("“{name}”")), short(snapshot.time));
     let (shorter, pairs) = (short(of.step / 2.0), several(count as u64, "crossing"));
-    let step = format!("the step is too long for contact; try one of {shorter} s");
+    let step = format!("the step is too long for contact; take a shorter one, such as {shorter} s");
     Some(format!("surfaces cross at {time} s in “{}”, of {names} ({pairs}): {step}", of.name))
 }
 

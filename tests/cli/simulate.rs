@@ -722,3 +722,33 @@ fn forces_of_contact_are_columns() {
     }
     assert!(most > 5.0, "they met: {most}");
 }
+
+/// Features that pass each other sideways in a long step cross; the first frame in which they do is told.
+#[test]
+fn surfaces_that_cross_are_told() {
+    let place = Place::new();
+    place.write(
+        "fast.toml",
+        "time = { duration = 0.1, step = 0.004, frames_per_second = 250 }\n\
+         body = [\n\
+         { name = 'left', lattice = { cells = [3, 3, 3], side = 0.1, elements = 'tetrahedra' }, velocity = [10, 0, 0],\n\
+         rotation = { axis = [2, 0.2, -1.3], angle = 0.9 }, offset = [-0.35, 0, 0] },\n\
+         { name = 'right', lattice = { cells = [3, 3, 3], side = 0.1, elements = 'tetrahedra' }, velocity = [-10, 0, 0],\n\
+         rotation = { axis = [0, -0.9, 1.5], angle = 1.4 }, offset = [0.35, 0.004, 0.02] }]\n\
+         run = [{ name = 'soft', model = { kind = 'shape-based', young = 2e4, damping = 2.108, damping_of = 'deformation' } }]\n",
+    );
+    let output = place.run("simulate fast.toml");
+    let (status, told) = (output.status, output.err);
+    assert_eq!(status, Some(0), "{told}");
+    let expected = "in “soft”, of “left” and “right” (";
+    assert!(told.contains(expected) && told.contains("take a shorter one, such as 0.002 s"), "{told}");
+    assert_eq!(told.matches("surfaces cross at").count(), 1, "{told}");
+    let of = |step: &str| {
+        let output = place.run(&format!("simulate fast.toml --set time.step={step} --overwrite -q"));
+        assert_eq!(output.status, Some(0), "{output:?}");
+        let table = place.read("output/fast/diagnostics.csv");
+        let at = table.lines().next().unwrap().split(',').position(|head| head == "crossings").expect("a column");
+        rows(&table).iter().map(|row| row[at].parse::<f64>().unwrap()).fold(0.0, f64::max)
+    };
+    assert!(of("0.004") > 0.0 && of("0.0005") == 0.0);
+}
