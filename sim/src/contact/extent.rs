@@ -1,6 +1,6 @@
 //! Boxes around points, and which of them are near each other.
 
-use super::pair::Places;
+use super::places::Places;
 use super::surface::Surface;
 use glam::DVec3;
 

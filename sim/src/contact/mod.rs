@@ -8,6 +8,7 @@ mod bound;
 mod candidates;
 mod closest;
 mod cross;
+mod end;
 mod extent;
 mod features;
 mod ground;
@@ -16,6 +17,7 @@ mod inside;
 mod obstacle;
 mod overlap;
 mod pair;
+mod places;
 mod points;
 #[cfg(test)]
 mod queries;
@@ -28,6 +30,7 @@ mod surface;
 mod touches;
 
 pub(crate) use bound::{Bound, Floor};
+pub(crate) use end::End;
 pub use impulses::ContactForce;
 pub(crate) use impulses::{Felt, Impulses};
 pub use obstacle::ground;
@@ -38,7 +41,7 @@ pub(crate) use rule::Timing;
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;
 pub use shape::Shape;
-pub(crate) use stage::{End, Stage};
+pub(crate) use stage::Stage;
 
 /// How the surfaces of bodies meet each other, obstacles with an extent, and themselves: points with faces, and edges with edges, so that
 /// nothing goes through. In a world without it nodes meet obstacles, as in the paper, and nothing else meets.

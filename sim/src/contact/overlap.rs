@@ -4,7 +4,7 @@ use super::cross::{Corners, near_facets};
 use super::extent::Extent;
 use super::features::Placed;
 use super::inside::inside;
-use super::pair::Places;
+use super::places::Places;
 use super::shape::ROUND_OFF;
 use super::surface::Surface;
 use super::{Contacts, Obstacle, Side};

@@ -3,11 +3,11 @@
 use super::candidates::Candidates;
 use super::extent::{Extent, near, sweep};
 use super::features::{Kind, Placed};
+use super::places::Places;
 use super::rule::Law;
 use super::shown::Shown;
 use super::surface::Surface;
 use super::touches::{Sides, Touches};
-use crate::carried::Weights;
 use glam::DVec3;
 
 /// Two surfaces that may meet, or one with itself.
@@ -23,28 +23,6 @@ pub(super) struct Pair {
     candidates: [Candidates; 3],
     /// What touches in this step.
     pub(super) touches: Touches,
-}
-
-/// Nodes and points of obstacles, numbered after them.
-#[derive(Clone, Copy)]
-pub(super) struct Places<'a> {
-    pub(super) nodes: &'a [DVec3],
-    pub(super) obstacles: &'a [DVec3],
-}
-
-impl Places<'_> {
-    pub(super) fn node(&self, node: u32) -> DVec3 {
-        let node = node as usize;
-        if node < self.nodes.len() { self.nodes[node] } else { self.obstacles[node - self.nodes.len()] }
-    }
-
-    /// A point as the weighted mean of its nodes.
-    pub(super) fn point(&self, points: &Weights, point: u32) -> DVec3 {
-        match points.of(point as usize) {
-            (&[node], _) => self.node(node),
-            (nodes, weights) => nodes.iter().zip(weights).map(|(&node, &weight)| self.node(node) * weight).sum(),
-        }
-    }
 }
 
 /// What is known of a step when pairs are looked at.

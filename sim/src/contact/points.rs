@@ -2,7 +2,8 @@
 
 use super::Side;
 use super::ground::Grounds;
-use super::pair::{Pair, Places, Seen};
+use super::pair::{Pair, Seen};
+use super::places::Places;
 use super::shown::Shown;
 use super::stage::Stage;
 use crate::motion::Interval;

@@ -1,6 +1,6 @@
 //! A surface at the start of a step: the places of its points, and which of its edges are flat.
 
-use super::pair::Places;
+use super::places::Places;
 use super::surface::Surface;
 use glam::DVec3;
 

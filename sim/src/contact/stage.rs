@@ -1,11 +1,13 @@
 //! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
 
 use super::cross::crossings;
+use super::end::End;
 use super::extent::Extent;
 use super::features::Placed;
 use super::ground::Grounds;
-use super::pair::{Pair, Places, Seen};
-use super::rule::{Law, Moved, Timing};
+use super::pair::{Pair, Seen};
+use super::places::Places;
+use super::rule::{Law, Moved};
 use super::shown::Shown;
 use super::surface::Surface;
 use super::{Contacts, Impulses, Obstacle, Side};
@@ -99,20 +101,6 @@ impl Clone for Stage {
             grounds: Mutex::new(grounds.lock().unwrap_or_else(PoisonError::into_inner).clone()),
         }
     }
-}
-
-/// The end of a step, as contact sees and changes it. Only the nodes of surfaces count.
-pub(crate) struct End<'a> {
-    pub(crate) interval: Interval,
-    /// At the start of the step.
-    pub(crate) before: Nodes<'a>,
-    pub(crate) position: &'a mut [DVec3],
-    pub(crate) velocity: &'a mut [DVec3],
-    pub(crate) timing: Timing,
-    /// Takes the nodes that contact changes.
-    pub(crate) changed: &'a mut Vec<u32>,
-    /// Where impulses are added up, if anywhere.
-    pub(crate) impulses: Option<&'a Impulses>,
 }
 
 impl Stage {
