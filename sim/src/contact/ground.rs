@@ -3,7 +3,7 @@
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
 use super::end::End;
-use super::points::{ContactPoint, SLACK};
+use super::places::{ContactPoint, SLACK};
 use super::rule::{Law, Moved, Term, Touch};
 use super::surface::Surface;
 use super::{Obstacle, Side};

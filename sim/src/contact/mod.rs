@@ -36,7 +36,7 @@ pub(crate) use impulses::{Felt, Impulses};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
 pub use overlap::{Overlap, Surfaces};
-pub use points::ContactPoint;
+pub use places::ContactPoint;
 pub(crate) use rule::Timing;
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;

@@ -1,30 +1,16 @@
 //! Where bodies touch each other and obstacles, for pictures. It depends on positions alone.
 
-use super::Side;
 use super::ground::Grounds;
 use super::pair::{Pair, Seen};
-use super::places::Places;
+use super::places::{ContactPoint, Places, SLACK};
 use super::shown::Shown;
 use super::stage::Stage;
 use crate::motion::Interval;
 use glam::DVec3;
 use std::sync::PoisonError;
 
-/// A place where a body touches an obstacle, another body or itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactPoint {
-    /// What the body touches.
-    pub from: Side,
-    /// The number of the body.
-    pub on: usize,
-    /// The place on the body (m).
-    pub at: DVec3,
-}
-
 /// Places of a pair that are nearer than so many times the distance that is kept are one: the fifth part of a usual element.
 const SAME: f64 = 8.0;
-/// What touches is at most this share of the distance that is kept farther apart than that.
-pub(super) const SLACK: f64 = 0.1;
 
 impl Stage {
     /// Where surfaces touch at a time (s), with positions of all nodes (m), in the order of pairs.

@@ -10,7 +10,7 @@ use crate::world::Moment;
 
 impl World {
     /// Keeps the mean forces of contact from now on, over intervals of time: an interval ends with the step nearest to each multiple of the
-    /// moment `every`, and with every step if it is shorter. With an infinite one it ends when [`Self::end_contact_interval`] is called. Bodies
+    /// moment `every`, and with every step if it is shorter. Bodies
     /// move with the same bits as without, and a fast step costs a little more where nodes meet obstacles. Forces of a recorded world are
     /// those that were recorded.
     ///
@@ -29,14 +29,6 @@ impl World {
         impulses.load(&self.state.memory.contact, self.state.steps);
         impulses.store(&mut self.state.memory.contact);
         self.system.impulses = Some(impulses);
-    }
-
-    /// Ends the present interval of contact forces. It does nothing at its start, and without intervals.
-    pub fn end_contact_interval(&mut self) {
-        self.pause();
-        let System { impulses, step, .. } = &mut self.system;
-        impulses.iter_mut().for_each(|impulses| impulses.end(self.state.steps, *step));
-        self.settle();
     }
 
     /// The mean forces of contact in the last interval that has ended, of each obstacle and then of each body on each other body; `None`

@@ -1,24 +1,14 @@
 //! Worlds whose surroundings and nodes change between steps, by the code of every kernel.
 
+use super::INTEGRATORS;
 use super::support::{floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::xpbd::Xpbd;
-use localshape_sim::{
-    Body, Crew, Grip, Integrator, Kernel, Motion, Pose, Springs, State, Status, Stepping, Surroundings, World,
-};
+use localshape_sim::{Body, Crew, Grip, Kernel, Motion, Pose, Springs, State, Status, Stepping, Surroundings, World};
 use std::sync::Arc;
 
 const STEP: f64 = 1e-4;
-const INTEGRATORS: [Integrator; 7] = [
-    Integrator::SemiImplicitEuler,
-    Integrator::ExplicitEuler,
-    Integrator::VelocityVerlet,
-    Integrator::Pefrl,
-    Integrator::RungeKutta,
-    Integrator::DormandPrince,
-    Integrator::BackwardEuler,
-];
 
 /// A lattice and the same with its elements backwards, which has another kernel.
 fn bodies() -> [Arc<Body>; 2] {

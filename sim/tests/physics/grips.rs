@@ -1,5 +1,6 @@
 //! Kinematic constraints: nodes that are held, gripped, dragged and released.
 
+use super::INTEGRATORS;
 use super::conformance::{STIFFNESS, of_stiffness};
 use super::support::{bricks, lattice, shape_based, world};
 use glam::{DQuat, DVec3};
@@ -106,20 +107,11 @@ fn nodes_that_are_held_have_no_speed_of_their_own() {
     ];
     let around = Surroundings { grips, ..Surroundings::default() };
     let stiff = Metric::new(&body, Material { young: 1e5, poisson: 0.49 }, 0.0).expect("it fits");
-    let integrators = [
-        Integrator::SemiImplicitEuler,
-        Integrator::ExplicitEuler,
-        Integrator::VelocityVerlet,
-        Integrator::Pefrl,
-        Integrator::RungeKutta,
-        Integrator::DormandPrince,
-        Integrator::BackwardEuler,
-    ];
     // Other models a thousand times as stiff as their step bears.
     let cases = of_stiffness(1e6 * STIFFNESS, &body, 0.0);
     for model in cases.iter().map(|case| &*case.model).chain([&stiff as &dyn ElasticModel]) {
         let takes = |integrator: &Integrator| integrator.refusal(model, &body).is_none();
-        for (integrator, kernel) in integrators
+        for (integrator, kernel) in INTEGRATORS
             .into_iter()
             .filter(takes)
             .flat_map(|integrator| [(integrator, Kernel::Fast), (integrator, Kernel::Reference)])

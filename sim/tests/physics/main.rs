@@ -42,3 +42,16 @@ mod support;
 mod surfaces;
 mod threads;
 mod xpbd;
+
+use localshape_sim::Integrator;
+
+/// All integrators.
+const INTEGRATORS: [Integrator; 7] = [
+    Integrator::SemiImplicitEuler,
+    Integrator::ExplicitEuler,
+    Integrator::VelocityVerlet,
+    Integrator::Pefrl,
+    Integrator::RungeKutta,
+    Integrator::DormandPrince,
+    Integrator::BackwardEuler,
+];

@@ -1,19 +1,10 @@
 //! The state has everything that persists between steps.
 
+use super::INTEGRATORS;
 use super::conformance::{bodies, cases};
 use super::support::{Noise, floor, lattice, shape_based};
 use glam::DVec3;
 use localshape_sim::{Grip, Integrator, Kernel, Moment, Motion, Offset, State, Status, Stepping, Surroundings, World};
-
-const ALL: [Integrator; 7] = [
-    Integrator::SemiImplicitEuler,
-    Integrator::ExplicitEuler,
-    Integrator::VelocityVerlet,
-    Integrator::Pefrl,
-    Integrator::RungeKutta,
-    Integrator::DormandPrince,
-    Integrator::BackwardEuler,
-];
 
 /// Continues from a state that was written and read, in a new world.
 fn revived(world: &World, mut fresh: World) -> World {
@@ -32,9 +23,9 @@ fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
     let bodies = bodies();
     for body in &bodies[bodies.len() / 2..] {
         let grip = Grip { nodes: vec![0], from: 0.002, until: 0.006, motion: Motion::at(Offset::default()) };
-        let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
+        let ways = INTEGRATORS.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
         // The last four have no vectorised steps.
-        let ways = ways.filter(|(way, kernel)| *kernel == Kernel::Reference || ALL[..4].contains(way));
+        let ways = ways.filter(|(way, kernel)| *kernel == Kernel::Reference || INTEGRATORS[..4].contains(way));
         for (integrator, kernel) in ways {
             for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 0.0)] {
                 let around = Surroundings {
@@ -87,7 +78,7 @@ fn a_rejected_step_leaves_nothing_behind() {
     let body = lattice(2, 0.1);
     let shape = shape_based(1e4, 0.0);
     let grip = |nodes: u32, until: f64| Grip { nodes: (0..nodes).collect(), from: 0.0, until, motion: Motion::Still };
-    let ways = ALL[..5].iter().flat_map(|&way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
+    let ways = INTEGRATORS[..5].iter().flat_map(|&way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
     // The last one lets all nodes go some steps before a node becomes too fast.
     let grips = [vec![], vec![grip(1, f64::INFINITY)], vec![grip(27, 2.6)]];
     for ((integrator, kernel), grips) in ways.flat_map(|way| grips.iter().map(move |grips| (way, grips.clone()))) {
