@@ -79,7 +79,8 @@ pub use output::FrameFolder;
 pub use render::Renderer;
 pub use runner::Runner;
 pub use scene::{
-    BodyBuilder, Lattice, Limits, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene, SceneBuilder, SceneError,
+    BodyBuilder, Lattice, Limits, LoadBuilder, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene, SceneBuilder,
+    SceneError,
 };
 
 #[cfg(feature = "render")]

@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::crew::Crew;
-use super::diagnostics::{BodyFacts, Lazy, Touching};
+use super::diagnostics::{BodyFacts, Lazy, Outside};
 use super::fill;
 use super::model::Report;
 use super::placement::Placement;
@@ -44,7 +44,7 @@ impl Diagnose {
         &'a self,
         state: Nodes<'a>,
         [global_rotations, broken]: [f64; 2],
-        touching: Touching,
+        outside: Outside,
         gone: Vec<bool>,
         report: impl FnOnce() -> Report + 'a,
         crew: &'a Crew,
@@ -54,7 +54,7 @@ impl Diagnose {
             state,
             global_rotations,
             broken,
-            touching,
+            outside,
             report: Lazy::new(Box::new(report)),
             volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
             gone,
@@ -103,7 +103,7 @@ mod tests {
 
     fn diagnostics(diagnose: &Diagnose, state: &State) -> Diagnostics {
         let crew = Crew::new(1);
-        let bodies = [diagnose.facts(state.nodes(), [0.0; 2], Touching::default(), Vec::new(), Report::default, &crew)];
+        let bodies = [diagnose.facts(state.nodes(), [0.0; 2], Outside::default(), Vec::new(), Report::default, &crew)];
         Diagnostics::of(Facts { bodies: &bodies, gravity: DVec3::ZERO }, Diagnostic::ALL)
     }
 

@@ -12,15 +12,17 @@ use std::fmt;
 /// A value that is computed when it is first used.
 pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
 
-/// What is known of the contact of a body.
+/// What is known of what acts on a body from outside.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touching {
-    /// The mean force on it (N).
+pub(super) struct Outside {
+    /// The mean force of contact (N).
     pub(super) force: Option<DVec3>,
     /// Its torque about the origin (N m).
     pub(super) torque: Option<DVec3>,
     /// Its triangles that cross its own or those of obstacles, and those that cross those of other bodies.
     pub(super) crossings: Option<[usize; 2]>,
+    /// The work of loads since the start (J).
+    pub(super) work: Option<f64>,
 }
 
 /// The quantities of one body from which diagnostics are computed.
@@ -32,7 +34,7 @@ pub(super) struct BodyFacts<'a> {
     pub(super) global_rotations: f64,
     /// Elements or springs that are broken; NaN if none can be.
     pub(super) broken: f64,
-    pub(super) touching: Touching,
+    pub(super) outside: Outside,
     /// Energy and residuals from the model.
     pub(super) report: Lazy<'a, Report>,
     /// Signed volume of each element (m³, in the plane m²).
@@ -159,7 +161,7 @@ impl<'a> Facts<'_, 'a> {
     fn crossings(self) -> f64 {
         // Two of several bodies share a pair.
         let share = if self.bodies.len() > 1 { 0.5 } else { 1.0 };
-        self.total(|body| body.touching.crossings.map_or(f64::NAN, |[own, shared]| own as f64 + share * shared as f64))
+        self.total(|body| body.outside.crossings.map_or(f64::NAN, |[own, shared]| own as f64 + share * shared as f64))
     }
 
     /// RMS distance of the nodes from the placements of their bodies (m).
@@ -234,7 +236,7 @@ macro_rules! diagnostics {
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
         /// body does not have is NaN: the elastic energy, `residual`, `global_rotations` and `broken` of some models, the volume ratio of a cloth,
-        /// and what is told of contact in a world that is not asked for it.
+        /// what is told of contact in a world that is not asked for it, and the work of loads in a world without them.
         /// Two that are both NaN are equal.
         #[derive(Clone, Copy, Debug, Default)]
         #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
@@ -354,6 +356,9 @@ diagnostics! { facts:
     /// Total energy (J): kinetic, elastic and gravitational.
     Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
 
+    /// Work that loads have done since the start (J).
+    Work, work: f64, "work of loads", "J", Frames = facts.total(|body| body.outside.work.unwrap_or(f64::NAN));
+
     /// Number of rotations since the start that needed the global solver, because the element was pressed flat, turned
     /// inside out, or turned far in one step.
     GlobalRotations, global_rotations: f64, "global rotations", "", Frames =
@@ -364,11 +369,11 @@ diagnostics! { facts:
 
     /// Mean force of obstacles and other bodies where they touch (N), in the last interval between rows, or else frames; as one number, its
     /// length.
-    ContactForce, contact_force: DVec3, "contact force", "N", Frames = facts.total_of_vectors(|body| body.touching.force.unwrap_or(DVec3::NAN));
+    ContactForce, contact_force: DVec3, "contact force", "N", Frames = facts.total_of_vectors(|body| body.outside.force.unwrap_or(DVec3::NAN));
 
     /// Its torque about the origin (N m); as one number, its length.
     ContactTorque, contact_torque: DVec3, "contact torque", "N m", Frames =
-        facts.total_of_vectors(|body| body.touching.torque.unwrap_or(DVec3::NAN));
+        facts.total_of_vectors(|body| body.outside.torque.unwrap_or(DVec3::NAN));
 
     /// Number of pairs of triangles, or of sides in the plane, of bodies and obstacles that cross each other where surfaces meet: 0 where all is
     /// well.

@@ -88,7 +88,7 @@ impl SpeedLimit {
         let mut elements_of_node = vec![0u32; body.len()];
         body.elements.indices().iter().for_each(|&node| elements_of_node[node as usize] += 1);
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
-        let Surroundings { gravity, obstacles, grips, forces, loads, .. } = surroundings;
+        let Surroundings { gravity, obstacles, grips, .. } = surroundings;
         let pushing = obstacles.iter().map(|obstacle| {
             // A half-space is infinite: only its rotation near the body counts.
             let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);
@@ -106,8 +106,9 @@ impl SpeedLimit {
             moving.fold((0.0, start), |(far, fast), (way, speed)| (way.max(far), speed.max(fast)));
         let extent = extent + farthest;
         let own = Self::EXTENTS_PER_CYCLE * most.sqrt() * extent / part.period + Self::MARGIN * fastest;
-        let own = if loads.is_empty() { own } else { Self::MOST };
-        let of_nodes = forces.iter().skip(part.nodes.start).zip(&body.mass);
+        let greatest = surroundings.greatest(at.position);
+        let own = if greatest.is_some() { own } else { Self::MOST };
+        let of_nodes = greatest.iter().flat_map(|forces| &forces[part.nodes.clone()]).zip(&body.mass);
         let pushed = of_nodes.map(|(force, mass)| force.length() / mass);
         let growth = Self::MARGIN * (gravity.length() + pushed.fold(0.0, f64::max));
         Self { own, growth, since }

@@ -88,7 +88,7 @@ pub enum Ease {
 }
 
 impl Ease {
-    fn share(self, s: f64) -> f64 {
+    pub(crate) fn share(self, s: f64) -> f64 {
         match self {
             // With the same bits on every machine: this library uses basic arithmetic only.
             Self::Smooth => 0.5 * (1.0 - libm::cos(PI * s)),

@@ -69,6 +69,21 @@ pub struct Memory {
     pub integrator: Vec<f64>,
     /// Of contact forces, if they are kept ([`World::keep_contact_forces`](super::World::keep_contact_forces)): sums and means.
     pub contact: Vec<f64>,
+    /// Of forces from outside, if there are any: their work so far (J) on each part, and the time (s) and the positions (m) of their nodes when
+    /// it was added up.
+    pub loads: Vec<f64>,
+}
+
+impl Memory {
+    /// All but the memory of the integrator, which a state that is only shown does not need.
+    pub fn shown(&self) -> impl Iterator<Item = &f64> {
+        self.model.iter().chain(&self.constraints).chain(&self.contact).chain(&self.loads)
+    }
+
+    /// The same numbers, to be changed.
+    pub fn shown_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.model.iter_mut().chain(&mut self.constraints).chain(&mut self.contact).chain(&mut self.loads)
+    }
 }
 
 /// Positions and velocities of the nodes of one part.
@@ -99,7 +114,7 @@ impl State {
 
     /// The state as bytes, for [`Self::from_bytes`]: a header, then every number as 64 bits, little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let Memory { model, constraints, integrator, contact } = &self.memory;
+        let Memory { model, constraints, integrator, contact, loads } = &self.memory;
         let (diverged, [time, step, part, element]) = match self.status {
             Status::Ok => (0, [0; 4]),
             Status::Diverged(Divergence { time, step, part, element, is_end }) => (
@@ -107,10 +122,11 @@ impl State {
                 [time.to_bits(), step, part as u64, element.map_or(0, |element| element as u64 + 1)],
             ),
         };
-        let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len(), contact.len()];
+        let lengths =
+            [self.position.len(), model.len(), constraints.len(), integrator.len(), contact.len(), loads.len()];
         let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths.map(|len| len as u64));
         let vectors = self.position.iter().chain(&self.velocity).flat_map(|vector| vector.to_array());
-        let memory = model.iter().chain(constraints).chain(integrator).chain(contact).copied();
+        let memory = model.iter().chain(constraints).chain(integrator).chain(contact).chain(loads).copied();
         let words = header.chain(vectors.chain(memory).map(f64::to_bits)).map(u64::to_le_bytes);
         MARK.iter().copied().chain(words.flatten()).collect()
     }
@@ -121,8 +137,9 @@ impl State {
         let (header, words) = words.split_at_checked(HEADER)?;
         let [steps, diverged, time, step, part, element, lengths @ ..]: [u64; HEADER] =
             std::array::from_fn(|at| u64::from_le_bytes(header[at]));
-        let [nodes, model, constraints, integrator, contact] = lengths.map(|length| usize::try_from(length).ok());
-        let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?, contact?]);
+        let [nodes, model, constraints, integrator, contact, loads] =
+            lengths.map(|length| usize::try_from(length).ok());
+        let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?, contact?, loads?]);
         // The counts are untrusted: they are checked against the length of the input before anything is allocated.
         let mut rest = words;
         let mut take = |count: usize| -> Option<Vec<f64>> {
@@ -132,8 +149,9 @@ impl State {
         };
         let vectors = |numbers: Vec<f64>| numbers.as_chunks::<3>().0.iter().map(|&v| DVec3::from_array(v)).collect();
         let (position, velocity) = (vectors(take(nodes)?), vectors(take(nodes)?));
-        let [model, constraints, integrator, contact] = memory.map(&mut take);
-        let memory = Memory { model: model?, constraints: constraints?, integrator: integrator?, contact: contact? };
+        let [model, constraints, integrator, contact, loads] = memory.map(&mut take);
+        let (constraints, integrator, contact) = (constraints?, integrator?, contact?);
+        let memory = Memory { model: model?, constraints, integrator, contact, loads: loads? };
         let status = match diverged {
             0 => Status::Ok,
             1 | 2 => {
@@ -148,17 +166,17 @@ impl State {
 }
 
 /// The first bytes of every state.
-const MARK: &[u8] = b"localshape state 6\n";
+const MARK: &[u8] = b"localshape state 7\n";
 /// Number of 64-bit words in the header.
-const HEADER: usize = 11;
+const HEADER: usize = 12;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn state() -> State {
-        let memory =
-            Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0], contact: vec![0.25] };
+        let (model, integrator) = (vec![1.0, f64::NAN], vec![-0.0]);
+        let memory = Memory { model, constraints: vec![], integrator, contact: vec![0.25], loads: vec![3.0, 0.5] };
         let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0), is_end: false });
         let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
         State { position, velocity, steps: 9, status, memory }
@@ -188,7 +206,7 @@ mod tests {
         assert!(State::from_bytes(&[&bytes[..], &[0; 8]].concat()).is_none());
         assert!(State::from_bytes(&changed(0, b'L')).is_none());
         // Of an earlier version.
-        assert!(State::from_bytes(&changed(MARK.len() - 2, b'5')).is_none());
+        assert!(State::from_bytes(&changed(MARK.len() - 2, b'6')).is_none());
         // Counts too large for any memory, and a status that does not exist.
         assert!(State::from_bytes(&changed(MARK.len() + 6 * 8 + 7, 0xff)).is_none());
         assert!(State::from_bytes(&changed(MARK.len() + 8, 3)).is_none());

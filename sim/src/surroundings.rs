@@ -2,9 +2,9 @@
 
 use super::contact::{Contacts, Obstacle, Shape, Side};
 use super::grip::Grip;
-use super::motion::{Motion, Offset};
+use super::load::Load;
+use super::motion::{Interval, Motion, Offset};
 use glam::DVec3;
-use std::fmt;
 use std::sync::Arc;
 
 /// Gravity, forces, obstacles and kinematic constraints around bodies.
@@ -22,26 +22,6 @@ pub struct Surroundings {
     pub forces: Vec<DVec3>,
     /// Forces that change with time or with the positions of nodes, beside the constant ones.
     pub loads: Vec<Arc<dyn Load>>,
-}
-
-/// Forces on nodes that change with time or with positions, such as wind, a push or a spring to a point outside. Closures with the arguments
-/// of [`Self::add`] are loads, too.
-pub trait Load: Send + Sync {
-    /// Adds the forces (N) on all nodes, which are at `position` (m) at a time (s), to `forces`, one for each node. The same arguments add
-    /// the same forces: a step may be evaluated more than once.
-    fn add(&self, time: f64, position: &[DVec3], forces: &mut [DVec3]);
-}
-
-impl<F: Fn(f64, &[DVec3], &mut [DVec3]) + Send + Sync> Load for F {
-    fn add(&self, time: f64, position: &[DVec3], forces: &mut [DVec3]) {
-        self(time, position, forces);
-    }
-}
-
-impl fmt::Debug for dyn Load {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Load")
-    }
 }
 
 /// A mistake in the surroundings of bodies: what was found where, and what was expected.
@@ -91,6 +71,36 @@ impl Surroundings {
             fault_of_grip(grip).map_or(Ok(()), Err).map_err(value("grip", at))?;
         }
         Ok(())
+    }
+
+    /// Whether there are forces from outside on nodes.
+    pub(super) fn has_loads(&self) -> bool {
+        !(self.forces.is_empty() && self.loads.is_empty())
+    }
+
+    /// Whether forces from outside are the same at all times and positions in a step.
+    pub(super) fn are_steady(&self, interval: Interval) -> bool {
+        self.loads.iter().all(|load| load.is_steady(interval))
+    }
+
+    /// The greatest forces from outside on nodes at `position` (m), as far as they are known.
+    pub(super) fn greatest(&self, position: &[DVec3]) -> Option<Vec<DVec3>> {
+        let mut forces = self.forces.clone();
+        forces.resize(position.len(), DVec3::ZERO);
+        self.loads.iter().all(|load| load.add_greatest(position, &mut forces)).then_some(forces)
+    }
+
+    /// The nodes of so many that forces from outside are on, in rising order.
+    pub(super) fn loaded(&self, nodes: usize) -> Vec<u32> {
+        if self.loads.iter().any(|load| load.nodes().is_none()) {
+            return (0..nodes as u32).collect();
+        }
+        let of_forces = (0..).zip(&self.forces).filter(|(_, force)| **force != DVec3::ZERO).map(|(node, _)| node);
+        let mut all: Vec<u32> = self.loads.iter().flat_map(|load| load.nodes().unwrap_or_default()).copied().collect();
+        all.extend(of_forces);
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 
     /// Adds the forces from outside on nodes at `position` (m) at a time (s).

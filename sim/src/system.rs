@@ -9,6 +9,7 @@ use super::motion::Interval;
 use super::part::Part;
 use super::state::{Divergence, Memory, Nodes, Runaway, State};
 use super::surroundings::Surroundings;
+use super::work::Work;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,6 +25,8 @@ pub(super) struct System {
     pub(super) contact: Option<Stage>,
     /// Where impulses of contact are added up, if they are asked for.
     pub(super) impulses: Option<Impulses>,
+    /// The work of forces from outside, if there are any.
+    pub(super) work: Option<Work>,
     /// Time step ΔT (s).
     pub(super) step: f64,
     pub(super) crew: Arc<Crew>,
@@ -68,6 +71,18 @@ impl System {
     pub(super) fn renew_contact(&mut self) {
         let Surroundings { contacts, obstacles, .. } = &self.surroundings;
         self.contact = contacts.as_ref().and_then(|contacts| Stage::new(contacts, &self.parts, obstacles));
+    }
+
+    /// Counts the work of forces from outside from a state on, after some work (J) on each part.
+    pub(super) fn renew_work(&mut self, sums: Vec<f64>, state: &State) {
+        let (parts, begin) = (self.parts.iter().map(|part| part.nodes.clone()), self.interval(state.steps).begin);
+        self.work = Work::new(&self.surroundings, parts, sums, begin, &state.position);
+    }
+
+    /// Whether the work of forces from outside is added up before the step after `steps` steps: where they change.
+    pub(super) fn adds_work(&self, steps: u64) -> bool {
+        let changes = |step: u64| !self.surroundings.are_steady(self.interval(step));
+        self.work.is_some() && (changes(steps) || steps > 0 && changes(steps - 1))
     }
 
     /// The time interval of the step after `steps` steps.

@@ -118,8 +118,7 @@ impl StatesWriter {
                 record += 8;
             }
             let nodes = state.position.len();
-            let memory = &state.memory;
-            let memory = memory.model.len() + memory.constraints.len() + memory.contact.len();
+            let memory = state.memory.shown().count();
             let nodes_of = format!(" {nodes}, 3");
             for (quantity, shape, length) in [
                 ("position", nodes_of.clone(), 24 * nodes),
@@ -184,9 +183,7 @@ impl StatesWriter {
                 record.extend(run.snapshot.time.to_le_bytes());
             }
             let vectors = |vectors: &[DVec3]| vectors.iter().flat_map(vector_bytes).collect();
-            let memory = &state.memory;
-            let memory = memory.model.iter().chain(&memory.constraints).chain(&memory.contact);
-            let memory: Vec<_> = memory.flat_map(|number| number.to_le_bytes()).collect();
+            let memory: Vec<_> = state.memory.shown().flat_map(|number| number.to_le_bytes()).collect();
             let rows: [Vec<u8>; 3] = [vectors(&state.position), vectors(&state.velocity), memory];
             for (digests, row) in stored.digests.iter_mut().zip(&rows) {
                 digests.push(Sha256::digest(row).into());

@@ -14,7 +14,7 @@ mod stored;
 use crate::look::Traced;
 use crate::scene::{Recorded, Scene};
 use crate::sim::{
-    Body, Crew, Diagnostic, Diagnostics, Integrator, Moment, State, Status, Stepping, Surroundings, World,
+    Body, Crew, Diagnostic, Diagnostics, Integrator, Load, Moment, State, Status, Stepping, Surroundings, World,
 };
 pub use frame::{Frame, LastFit, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
@@ -119,7 +119,7 @@ impl<'a> Runner<'a> {
     fn playing(mut self, recordings: &[Arc<Recorded>]) -> Option<Self> {
         let play = |(running, recording): (Running, &Arc<Recorded>)| {
             let State { position, memory, .. } = running.world.state();
-            let memory = memory.model.len() + memory.constraints.len() + memory.contact.len();
+            let memory = memory.shown().count();
             if (recording.nodes, recording.memory) != (position.len(), Some(memory)) {
                 return None;
             }
@@ -422,6 +422,7 @@ impl Scene {
             obstacles: self.obstacles.clone(),
             contacts: self.contacts.as_ref().map(|contacts| run.contacts(contacts)),
             grips: run.grips.clone(),
+            loads: run.loads.iter().map(|load| Arc::clone(load) as Arc<dyn Load>).collect(),
             ..Surroundings::default()
         };
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);

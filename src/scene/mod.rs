@@ -39,7 +39,9 @@ mod typed;
 
 pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};
-pub use builder::{BodyBuilder, ContactBuilder, NodeSet, ObstacleBuilder, PairBuilder, RunBuilder, SceneBuilder};
+pub use builder::{
+    BodyBuilder, ContactBuilder, LoadBuilder, NodeSet, ObstacleBuilder, PairBuilder, RunBuilder, SceneBuilder,
+};
 pub use error::SceneError;
 pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing, Up};
 pub use limits::Limits;

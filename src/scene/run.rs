@@ -3,7 +3,7 @@
 use super::{Recorded, Scene, SceneBody};
 use crate::colour::Colour;
 use crate::sim::model::ElasticModel;
-use crate::sim::{Assembly, Body, Contacts, Grip, Integrator, Kernel, PairContact, Side, State};
+use crate::sim::{Assembly, Body, Contacts, Grip, Integrator, Kernel, Loading, PairContact, Side, State};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -24,6 +24,8 @@ pub struct Run {
     pub recording: Option<Arc<Recorded>>,
     /// Kinematic constraints: nodes that are held or dragged, counted over all its bodies.
     pub grips: Vec<Grip>,
+    /// Loads on nodes and faces, counted over all its bodies.
+    pub loads: Vec<Arc<Loading>>,
     /// The integrator.
     pub integrator: Integrator,
     /// Time step ΔT (s); the time between frames for an integrator that chooses its steps.

@@ -26,6 +26,7 @@ impl SceneFile {
             contact: part(parts, "contact", report),
             hold: entries(parts, "hold", report),
             grab: entries(parts, "grab", report),
+            load: entries(parts, "load", report),
             view: part(parts, "view", report).unwrap_or_default(),
         }
     }
@@ -53,6 +54,7 @@ impl SceneFile {
         drop(&mut self.obstacle, "obstacle", checked);
         drop(&mut self.hold, "hold", checked);
         drop(&mut self.grab, "grab", checked);
+        drop(&mut self.load, "load", checked);
         self.gravity = self.gravity.take().filter(|_| !checked.flawed.contains("gravity"));
         if checked.flawed.contains("view") {
             self.view = TypedView::default();

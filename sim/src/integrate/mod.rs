@@ -381,6 +381,9 @@ impl Dynamics for ByForces {
             let interval = system.interval(state.steps);
             let step = Step { system, interval, limit: limit.at(interval.end) };
             step.begin(state, &mut self.next);
+            if let Some(work) = system.work.as_ref().filter(|_| system.adds_work(state.steps)) {
+                work.add(&system.surroundings, interval.begin, &state.position);
+            }
             let done = self.method.step(&step, state, &mut self.next);
             if let Some(impulses) = &system.impulses {
                 if done.is_ok() { impulses.keep() } else { impulses.forget(0) }

@@ -1,7 +1,7 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::stepper::{PartStepper, Rollback, Scheme};
-use super::{Around, Compiled, Conditions, Held, Meeting, PlaceNode};
+use super::{Around, Compiled, Conditions, Held, Meeting, PlaceNode, Push};
 use crate::body::Body;
 use crate::contact::{Bound, End, Floor, Obstacle, Placed};
 use crate::crew::Crew;
@@ -66,6 +66,7 @@ impl Dynamics for ByKernel {
             state.memory.constraints.clone()
         });
         let Surroundings { gravity, grips, forces, loads, .. } = &system.surroundings;
+        let (work, mut steady) = (system.work.as_ref(), forces.clone());
         let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
         let (obstacles, apart, impulses) = (&obstacles[..], &system.apart()[..], system.impulses.as_ref());
         let spans: Vec<_> = grips.iter().map(Grip::span).collect();
@@ -82,12 +83,16 @@ impl Dynamics for ByKernel {
             }
             let memory = taken.as_ref().unwrap_or(constraints);
             // Grips become active and inactive between stretches, and no step is repeated with other grips.
-            let is_new = |step: u64| system.takes(step, memory) || system.holds(step) != system.holds(step - 1);
+            let are_steady = |step: u64| system.surroundings.are_steady(system.interval(step));
+            let is_new = |step: u64| {
+                let changes = system.takes(step, memory) || system.holds(step) != system.holds(step - 1);
+                changes || are_steady(step) != are_steady(step - 1)
+            };
             if taken.is_some() || begin > 0 && is_new(begin) {
                 rollback.arrive();
             }
             // Moving obstacles are placed in advance, for this many steps at a time.
-            let until = match is_still && grips.is_empty() {
+            let until = match is_still && grips.is_empty() && loads.is_empty() {
                 true => target,
                 false => {
                     let last = target.min(begin + STRETCH);
@@ -120,13 +125,30 @@ impl Dynamics for ByKernel {
                 stage.alone(at, system.interval(step), most)
             };
             let push = |step: u64, share: f64, position: &[DVec3], forces: &mut [DVec3]| {
+                if let Some(work) = work.filter(|_| share == 0.0) {
+                    work.add(&system.surroundings, system.interval(step).begin, position);
+                }
                 forces.fill(DVec3::ZERO);
                 system.surroundings.push(system.interval(step).after(share), position, forces);
             };
+            let changes = !are_steady(begin);
+            if !changes && !loads.is_empty() {
+                let begin_time = system.interval(begin).begin;
+                if let Some(work) = work.filter(|_| system.adds_work(begin)) {
+                    let mut now = state.position.clone();
+                    work.nodes().iter().for_each(|&node| now[node as usize] = rollback.node(node as usize).0);
+                    work.add(&system.surroundings, begin_time, &now);
+                }
+                // Forces that are the same everywhere do not read positions.
+                steady.clear();
+                steady.resize(state.position.len(), DVec3::ZERO);
+                system.surroundings.push(begin_time, &state.position, &mut steady);
+            }
             let around = Around {
                 gravity: *gravity,
-                forces,
-                push: if loads.is_empty() { None } else { Some(&push) },
+                forces: &steady,
+                push: changes.then_some(&push as &Push<'_>),
+                work,
                 bounds: &met.bounds,
                 row: &|step| met.row(step),
                 resolve: &|step, node, position, velocity, acceleration| {

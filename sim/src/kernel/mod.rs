@@ -29,6 +29,7 @@ use crate::contact::{Bound, Floor, Impulses};
 use crate::lanes::Set;
 use crate::law::{ByLaw, Energy, Filled, Law};
 use crate::state::{Nodes, State};
+use crate::work::Work;
 use general::General;
 use glam::DVec3;
 use std::ops::Range;
@@ -141,7 +142,7 @@ pub(crate) struct Meeting<'a> {
     pub(crate) nodes: &'a [u32],
 }
 
-/// Writes the forces from outside on all nodes (N), which are at positions (m) after a share of the step of this number.
+/// Writes the forces from outside on all nodes (N) after a share of the step of this number, at positions (m).
 pub(crate) type Push<'a> = dyn Fn(u64, f64, &[DVec3], &mut [DVec3]) + Sync + 'a;
 
 /// What acts on the nodes besides elements. Its functions take the number of a step.
@@ -151,8 +152,10 @@ pub(crate) struct Around<'a> {
     pub(crate) gravity: DVec3,
     /// The force from outside on each node (N); empty for none.
     pub(crate) forces: &'a [DVec3],
-    /// What makes these forces anew for each pass, if they change.
+    /// What makes these forces anew for each pass, if they change. Only positions of the nodes with loads are read.
     pub(crate) push: Option<&'a Push<'a>>,
+    /// The nodes with loads, and their work.
+    pub(crate) work: Option<&'a Work>,
     /// Bounds of the obstacles that nodes meet, in all steps.
     pub(crate) bounds: &'a [Bound],
     /// The range of the bounds of a step.

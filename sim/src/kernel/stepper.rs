@@ -292,6 +292,7 @@ impl Rollback {
                 self.parts.iter_mut().for_each(|part| part.stepper.keep());
                 self.kept = Some(from);
                 around.impulses.inspect(|impulses| impulses.keep());
+                around.work.inspect(|work| work.keep());
             }
             let mut end = until.min(from + Self::KEPT);
             if let Some(count) = self.run_alone(end - self.steps, around, crew) {
@@ -343,6 +344,7 @@ impl Rollback {
     fn restore(&mut self, around: &Around<'_>) {
         self.parts.iter_mut().for_each(|part| part.stepper.restore());
         around.impulses.inspect(|impulses| impulses.forget(0));
+        around.work.inspect(|work| work.restore());
     }
 
     /// Takes steps, until a node is too fast. The state is then undefined.
@@ -358,7 +360,6 @@ impl Rollback {
         let outline = self.parts[0].passes(scheme, &steps, around);
         let mut buffers = std::mem::take(&mut self.buffers);
         let [before, after] = &mut buffers;
-        let all: Vec<u32> = around.push.iter().flat_map(|_| 0..count as u32).collect();
         let mut changed = std::mem::take(&mut self.changed);
         let (mut begun, mut is_read, mut forces) = (None, false, around.forces.to_vec());
         let mut lost = None;
@@ -369,7 +370,7 @@ impl Rollback {
                 if is_read { std::mem::swap(before, after) } else { self.read(nodes, before) }
             }
             if let Some(push) = around.push {
-                self.read(&all, after);
+                self.read(around.work.map_or(&[], |work| work.nodes()), after);
                 forces.resize(count, DVec3::ZERO);
                 push(number, shares[0], &after.position, &mut forces);
             }

@@ -3,8 +3,10 @@
 use super::World;
 use crate::contact::Obstacle;
 use crate::grip::Grip;
-use crate::state::Status;
-use crate::surroundings::{Load, Surroundings, WrongSurroundings, check_nodes, check_vectors};
+use crate::load::Load;
+use crate::state::{State, Status};
+use crate::surroundings::{Surroundings, WrongSurroundings, check_nodes, check_vectors};
+use crate::system::System;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -22,8 +24,7 @@ impl World {
         self.change(|around| around.gravity = gravity)
     }
 
-    /// Sets the constant force on each node (N) from now on; none for an empty list. They cost a fast step little. The energy of
-    /// diagnostics does not contain their potential.
+    /// Sets the constant force on each node (N) from now on; none for an empty list. They cost a fast step little.
     ///
     /// # Errors
     /// Not one force for each node, or one that is not finite.
@@ -47,9 +48,9 @@ impl World {
     /// Sets the forces that change with time or positions, from now on. A fast step then reads all positions before each evaluation of
     /// forces.
     pub fn set_loads(&mut self, loads: Vec<Arc<dyn Load>>) {
-        self.pause();
+        let work = self.pause();
         self.system.surroundings.loads = loads;
-        self.go_on();
+        self.go_on(work);
     }
 
     /// Sets the obstacles from now on. Their motions are functions of the time of the world, which goes on.
@@ -80,11 +81,11 @@ impl World {
         if number >= self.system.surroundings.grips.len() {
             return None;
         }
-        self.pause();
+        let work = self.pause();
         let grip = self.system.surroundings.grips.remove(number);
         let first: usize = self.system.surroundings.grips[..number].iter().map(Grip::width).sum();
         self.state.memory.constraints.drain(first..first + grip.width());
-        self.go_on();
+        self.go_on(work);
         Some(grip)
     }
 
@@ -97,9 +98,9 @@ impl World {
         let count = self.state.position.len();
         check_vectors("position", "positions", &position, count)?;
         check_vectors("velocity", "velocities", &velocity, count)?;
-        self.pause();
+        let work = self.pause();
         (self.state.position, self.state.velocity) = (position, velocity);
-        self.go_on();
+        self.go_on(work);
         Ok(())
     }
 
@@ -108,25 +109,38 @@ impl World {
         let mut changed = self.system.surroundings.clone();
         change(&mut changed);
         changed.check(self.state.position.len())?;
-        self.pause();
+        let work = self.pause();
         self.system.surroundings = changed;
         self.system.renew_contact();
         let (obstacles, steps) = (self.system.surroundings.obstacles.len(), self.state.steps);
         for impulses in self.system.impulses.iter_mut().filter(|kept| kept.obstacles() != obstacles) {
             *impulses = impulses.among(obstacles, steps);
         }
-        self.go_on();
+        self.go_on(work);
         Ok(())
     }
 
-    /// Takes the state out of the code that advances it.
-    pub(super) fn pause(&mut self) {
-        self.settle();
-        self.dynamics.restart();
+    /// The work of forces from outside so far on each part (J); `None` without them.
+    pub(super) fn work(&self) -> Option<Vec<f64>> {
+        let System { work, surroundings, .. } = &self.system;
+        let (work, State { position, memory, steps, .. }) = (work.as_ref()?, &self.state);
+        if self.dynamics.is_recorded() {
+            work.load(surroundings, &memory.loads, position.len());
+        }
+        Some(work.sums(surroundings, self.system.interval(*steps).begin, position))
     }
 
-    /// Forgets what follows from the surroundings before.
-    fn go_on(&mut self) {
+    /// Takes the state out of the code that advances it. Returns the work of forces from outside until now on each part (J).
+    pub(super) fn pause(&mut self) -> Vec<f64> {
+        self.settle();
+        self.dynamics.restart();
+        self.work().unwrap_or_else(|| vec![0.0; self.system.parts.len()])
+    }
+
+    /// Forgets what follows from the surroundings before, but the work until now.
+    fn go_on(&mut self, work: Vec<f64>) {
+        self.system.renew_work(work, &self.state);
+        self.settle();
         // What an implicit method has told stays true.
         if self.dynamics.unsolved(&self.state).is_none() {
             self.state.memory.integrator.clear();

@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::broken::Broken;
 use crate::crew::Crew;
 use crate::diagnose::Diagnose;
-use crate::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts, Touching};
+use crate::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts, Outside};
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::field::Field;
 use crate::integrate::{ByForces, Integrator, Method, Scales};
@@ -198,8 +198,10 @@ impl World {
             None => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
         let mut system =
-            System { parts, mass, surroundings, contact: None, impulses: None, step, crew: Arc::default() };
+            System { parts, mass, surroundings, contact: None, impulses: None, work: None, step, crew: Arc::default() };
         system.renew_contact();
+        system.renew_work(vec![0.0; system.parts.len()], &state);
+        system.work.iter().for_each(|work| work.store(&mut state.memory.loads));
         let (limit, wanted) = (system.speed_limit(&state), Diagnostic::ALL.to_vec());
         Self { system, dynamics, limit, field: None, wanted, state }
     }
@@ -291,6 +293,11 @@ impl World {
     pub fn settle(&mut self) {
         let Self { system, dynamics, state, .. } = self;
         dynamics.settle(state);
+        match &system.work {
+            Some(_) if dynamics.is_recorded() => {}
+            Some(work) => work.store(&mut state.memory.loads),
+            None => state.memory.loads.clear(),
+        }
         match &system.impulses {
             Some(_) if dynamics.is_recorded() => {}
             Some(impulses) => impulses.store(&mut state.memory.contact),
@@ -364,8 +371,12 @@ impl World {
         assert!(self.takes(&state), "a state of the same bodies");
         self.state = state;
         self.dynamics.restart();
-        let State { memory, steps, .. } = &self.state;
+        let State { memory, steps, position, .. } = &self.state;
         self.system.impulses.iter_mut().for_each(|impulses| impulses.load(&memory.contact, *steps));
+        let System { work, surroundings, .. } = &self.system;
+        if work.as_ref().is_some_and(|work| !work.load(surroundings, &memory.loads, position.len())) {
+            self.system.renew_work(vec![0.0; self.system.parts.len()], &self.state);
+        }
     }
 
     /// Whether the run has diverged.
@@ -419,10 +430,10 @@ impl World {
 
     /// The diagnostics in `wanted` of all bodies together, and those of each. The others are zero and cost no time.
     pub fn diagnostics_by_body(&self, wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
-        let touching = self.touching(wanted.contains(&Diagnostic::Crossings));
-        let bodies = self.system.parts.iter().zip(touching).map(|(part, touching)| {
+        let outside = self.outside(wanted.contains(&Diagnostic::Crossings));
+        let bodies = self.system.parts.iter().zip(outside).map(|(part, outside)| {
             let report = || self.dynamics.report(part, &self.state, None, &self.system.crew);
-            self.facts(part, touching, report)
+            self.facts(part, outside, report)
         });
         self.of_facts(&bodies.collect::<Vec<_>>(), wanted)
     }
@@ -439,14 +450,14 @@ impl World {
         (all, of_bodies)
     }
 
-    fn facts<'a>(&'a self, part: &'a Part, touching: Touching, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
+    fn facts<'a>(&'a self, part: &'a Part, outside: Outside, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
         let global_rotations = part.global_rotations(&self.state.memory.model);
         let broken = part.count_broken(&self.state.memory.model);
         let gone = part.broken_elements(&self.state.memory.model);
         part.diagnose.facts(
             part.nodes_of(self.state.nodes()),
             [global_rotations, broken],
-            touching,
+            outside,
             gone,
             report,
             &self.system.crew,
@@ -458,8 +469,8 @@ impl World {
         let Self { system, dynamics, state, field, wanted, .. } = self;
         let crew = &*system.crew;
         let (mut bodies, mut energies) = (Vec::new(), Vec::new());
-        let touching = self.touching(wanted.contains(&Diagnostic::Crossings));
-        for (part, touching) in system.parts.iter().zip(touching) {
+        let outside = self.outside(wanted.contains(&Diagnostic::Crossings));
+        for (part, outside) in system.parts.iter().zip(outside) {
             let mut of_nodes = Vec::new();
             let known = (*field == Some(Field::ElasticEnergy)).then(|| {
                 of_nodes.resize(part.body.len(), 0.0);
@@ -473,7 +484,7 @@ impl World {
                 report
             });
             let report = move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew));
-            bodies.push(self.facts(part, touching, report));
+            bodies.push(self.facts(part, outside, report));
             energies.push(of_nodes);
         }
         let (diagnostics, of_bodies) = self.of_facts(&bodies, wanted);

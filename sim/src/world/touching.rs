@@ -2,7 +2,7 @@
 
 use super::World;
 use crate::contact::{ContactForce, ContactPoint, Impulses, Side};
-use crate::diagnostics::Touching;
+use crate::diagnostics::Outside;
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::state::{Runaway, State};
 use crate::system::System;
@@ -66,18 +66,19 @@ impl World {
         Some(stage.map_or_else(Vec::new, |stage| stage.crossings(&self.state.position, time)))
     }
 
-    /// What diagnostics tell of contact, of each body: the mean force and its torque, and the crossings of its own and those that it shares
-    /// with other bodies, which are counted only if that is wanted.
-    pub(super) fn touching(&self, is_counted: bool) -> Vec<Touching> {
-        let mut all = vec![Touching::default(); self.system.parts.len()];
+    /// What diagnostics tell of each body from outside: the mean force of contact and its torque, the work of loads, and the crossings of its
+    /// own and those that it shares with other bodies, which are counted only if that is wanted.
+    pub(super) fn outside(&self, is_counted: bool) -> Vec<Outside> {
+        let mut all = vec![Outside::default(); self.system.parts.len()];
+        all.iter_mut().zip(self.work().into_iter().flatten()).for_each(|(outside, work)| outside.work = Some(work));
         for ContactForce { on, force, torque, .. } in self.contact_forces().iter().flatten() {
-            let Touching { force: sum, torque: turning, .. } = &mut all[*on];
+            let Outside { force: sum, torque: turning, .. } = &mut all[*on];
             *sum = Some(sum.unwrap_or_default() + *force);
             *turning = Some(turning.unwrap_or_default() + *torque);
         }
         let counted = is_counted.then(|| self.crossings()).flatten();
         if counted.is_some() {
-            all.iter_mut().for_each(|touching| touching.crossings = Some([0; 2]));
+            all.iter_mut().for_each(|outside| outside.crossings = Some([0; 2]));
         }
         for (sides, count) in counted.iter().flatten() {
             let is_shared = matches!(sides, [Side::Body(one), Side::Body(other)] if one != other);

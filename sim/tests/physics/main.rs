@@ -22,6 +22,7 @@ mod grounds;
 #[cfg(feature = "scene")]
 mod implicit;
 mod integrators;
+mod loads;
 #[cfg(feature = "scene")]
 mod masses;
 #[cfg(feature = "scene")]

@@ -14,12 +14,14 @@ macro_rules! setters {
 
 mod body;
 mod contact;
+mod load;
 mod nodes;
 mod obstacle;
 mod run;
 
 pub use body::BodyBuilder;
 pub use contact::{ContactBuilder, PairBuilder};
+pub use load::LoadBuilder;
 pub use nodes::NodeSet;
 pub use obstacle::ObstacleBuilder;
 pub use run::RunBuilder;
@@ -35,7 +37,7 @@ use crate::reading::collector::Collector;
 use crate::sim::{Diagnostic, Field, Integrator};
 use serde::Serialize;
 use serde_json::json;
-use std::ops::RangeBounds;
+use std::ops::{Bound, RangeBounds};
 use std::path::Path;
 use toml::de::DeTable;
 
@@ -97,10 +99,19 @@ impl Scene {
             contact: None,
             hold: Vec::new(),
             grab: Vec::new(),
+            load: Vec::new(),
             view: TypedView::default(),
         };
         SceneBuilder { file, time }
     }
+}
+
+/// The ends of a range of time (s).
+fn times(range: &impl RangeBounds<f64>) -> [Option<f64>; 2] {
+    [range.start_bound(), range.end_bound()].map(|bound| match bound {
+        Bound::Included(&time) | Bound::Excluded(&time) => Some(time),
+        Bound::Unbounded => None,
+    })
 }
 
 impl SceneBuilder {
@@ -152,10 +163,7 @@ impl SceneBuilder {
 
     /// Holds nodes in a range of time (s): `..` for ever, `0.5..2.0` for a while.
     pub fn hold(mut self, nodes: NodeSet, time: impl RangeBounds<f64>) -> Self {
-        let [from, until] = [time.start_bound(), time.end_bound()].map(|bound| match bound {
-            std::ops::Bound::Included(&time) | std::ops::Bound::Excluded(&time) => Some(time),
-            std::ops::Bound::Unbounded => None,
-        });
+        let [from, until] = times(&time);
         let NodeSet { body, nodes } = nodes;
         self.file.hold.push(Some(HoldFile { body, nodes, from: from.unwrap_or(0.0), until }));
         self
@@ -165,6 +173,12 @@ impl SceneBuilder {
     pub fn grab(mut self, nodes: NodeSet, path: MotionPath) -> Self {
         let NodeSet { body, nodes } = nodes;
         self.file.grab.push(Some(GrabFile { body, nodes, path }));
+        self
+    }
+
+    /// Adds a load on bodies.
+    pub fn load(mut self, load: LoadBuilder) -> Self {
+        self.file.load.push(Some(load.0));
         self
     }
 

@@ -6,6 +6,7 @@
 
 mod body;
 mod contact;
+mod load;
 mod motion;
 mod obstacle;
 mod run;
@@ -16,6 +17,7 @@ pub(in crate::scene) use body::{
 };
 pub use body::{Cells, Lattice, Rotation, Start, StartShape, Up};
 pub(in crate::scene) use contact::{ContactFile, ContactRule, PairFile};
+pub(in crate::scene) use load::{LoadFile, TorqueFile};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
@@ -65,6 +67,10 @@ pub(in crate::scene) struct SceneFile {
     #[serde(default)]
     #[schemars(with = "Vec<GrabFile>")]
     pub(in crate::scene) grab: Vec<Option<GrabFile>>,
+    /// Forces on nodes and faces from outside. Default: none.
+    #[serde(default)]
+    #[schemars(with = "Vec<LoadFile>")]
+    pub(in crate::scene) load: Vec<Option<LoadFile>>,
     /// How the scene is drawn.
     #[serde(default)]
     #[schemars(with = "View")]

@@ -178,15 +178,8 @@ impl Player {
             state.position = self.row(Quantity::Position, moment)?.to_vec();
             state.velocity = self.velocity(moment)?;
             if self.recorded.memory.is_some() {
-                let mut numbers = self.recorded.row(Quantity::Memory, moment)?.into_iter();
-                let memory = &mut state.memory;
-                memory
-                    .model
-                    .iter_mut()
-                    .chain(&mut memory.constraints)
-                    .chain(&mut memory.contact)
-                    .zip(&mut numbers)
-                    .for_each(|(to, from)| *to = from);
+                let numbers = self.recorded.row(Quantity::Memory, moment)?;
+                state.memory.shown_mut().zip(numbers).for_each(|(to, from)| *to = from);
             }
             return Ok(());
         }

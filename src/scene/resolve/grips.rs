@@ -50,7 +50,7 @@ pub(super) fn resolve(
         let Some(typed) = typed else { continue };
         let path = key_path!["hold", at].to_vec();
         let until = typed.until.unwrap_or(f64::INFINITY);
-        let nodes = select(typed.body.as_deref(), &typed.nodes, &layered, &path, report);
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), &layered, (&path, "nodes"), report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
             report.at(&key_path![path; "until"], message, None);
@@ -62,7 +62,7 @@ pub(super) fn resolve(
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let grab = key_path!["grab", at].to_vec();
-        let nodes = select(typed.body.as_deref(), &typed.nodes, &layered, &grab, report);
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), &layered, (&grab, "nodes"), report);
         let path = key_path![grab; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");

@@ -10,6 +10,7 @@ mod doubts;
 mod elements;
 mod grips;
 mod lists;
+mod loads;
 mod mass;
 mod mesh;
 mod motion;
@@ -90,6 +91,7 @@ impl<'a> Typed<'a> {
             let longest = fixed.fold(0.0, |longest: f64, run| longest.max(run.step));
             obstacles::check_steps(&file.obstacle, longest, report);
             grips::check_steps(&file.hold, &file.grab, longest, report);
+            loads::check_steps(&file.load, longest, report);
             file.time.iter().for_each(|time| check_rows(time, runs, report));
         }
         if report.total() > 0 {
@@ -161,12 +163,14 @@ impl<'a> Typed<'a> {
             contact::separate(self, bodies, obstacles, contacts, &choices);
         }
         let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&file.hold, &file.grab, bodies, report));
+        let loads = bodies.as_ref().and_then(|bodies| loads::resolve(&file.load, bodies, report));
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);
         }
         runs::check_names(&file.run, report);
         let runs = bodies.as_ref().and_then(|bodies| {
-            let resolved = runs::Resolved { choices: &choices, bodies, grips: grips.as_deref().unwrap_or_default() };
+            let (grips, loads) = (grips.as_deref().unwrap_or_default(), loads.as_deref().unwrap_or_default());
+            let resolved = runs::Resolved { choices: &choices, bodies, grips, loads };
             runs::resolve(self, recordings, resolved, report)
         });
         let (runs, own) = runs.unzip();

@@ -1,4 +1,4 @@
-//! The nodes that a constraint selects.
+//! The nodes that a constraint or a load selects.
 
 use super::{choice, vector};
 use crate::reading::captions::typed;
@@ -32,13 +32,13 @@ impl<'a> Layered<'a> {
     }
 }
 
-/// The selected nodes of each body, in rising order: those of the body of a `name`, or of all. `None` after reporting a mistake in a
-/// constraint at a path.
+/// The selected nodes of each body, in rising order: those of the body of a `name`, or of all; all nodes unless some are typed, under a key.
+/// `None` after reporting a mistake in a constraint or a load at a path.
 pub(super) fn select(
     name: Option<&str>,
-    typed: &NodesFile,
+    typed: Option<&NodesFile>,
     bodies: &[Layered<'_>],
-    path: &[PathPart<'_>],
+    (path, key): (&[PathPart<'_>], &str),
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
     let chosen = match name {
@@ -49,10 +49,11 @@ pub(super) fn select(
         }
         None => 0..bodies.len(),
     };
-    let path = key_path![path; "nodes"];
+    let path = key_path![path; key];
     let found = match (typed, &bodies[chosen.clone()]) {
-        (NodesFile::List(list), [only]) => vec![listed(list, only.body, &path, report)?],
-        (NodesFile::List(_), several) => {
+        (None, bodies) => bodies.iter().map(|one| (0..one.body.body.len() as u32).collect()).collect(),
+        (Some(NodesFile::List(list)), [only]) => vec![listed(list, only.body, &path, report)?],
+        (Some(NodesFile::List(_)), several) => {
             let message =
                 format!("`{}` is a list of nodes, but the scene has {} bodies", written(&path), several.len());
             let help =
@@ -60,8 +61,8 @@ pub(super) fn select(
             report.at(&path, message, help);
             return None;
         }
-        (NodesFile::Named(name), bodies) => named(name, bodies, &path, report)?,
-        (NodesFile::Region(region), bodies) => within(region, bodies, &path, report)?,
+        (Some(NodesFile::Named(name)), bodies) => named(name, bodies, &path, report)?,
+        (Some(NodesFile::Region(region)), bodies) => within(region, bodies, &path, report)?,
     };
     let mut nodes = vec![Vec::new(); bodies.len()];
     nodes.splice(chosen, found);

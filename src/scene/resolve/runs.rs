@@ -3,6 +3,7 @@
 use super::Typed;
 use super::choice::{self, Choice, TypedModel};
 use super::grips::SceneGrip;
+use super::loads::SceneLoad;
 use super::recordings::{ReadRecording, Shown};
 use super::steps::Steps;
 use crate::reading::captions::typed;
@@ -11,7 +12,7 @@ use crate::reading::words;
 use crate::scene::file::RunFile;
 use crate::scene::{ALL_BODIES, Recorded, Run, SceneBody};
 use crate::sim::model::{ElasticModel, Misfit};
-use crate::sim::{Assembly, Body, Grip, Integrator, Kernel, State};
+use crate::sim::{Assembly, Body, Grip, Integrator, Kernel, Loading, State};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -24,6 +25,7 @@ pub(super) struct Parts {
     initial: State,
     pub(super) models: Vec<Arc<dyn ElasticModel>>,
     pub(super) grips: Vec<Grip>,
+    loads: Vec<Arc<Loading>>,
     recording: Option<Arc<Recorded>>,
 }
 
@@ -60,6 +62,7 @@ pub(super) struct Resolved<'a> {
     /// The bodies of the scene.
     pub(super) bodies: &'a [SceneBody],
     pub(super) grips: &'a [SceneGrip],
+    pub(super) loads: &'a [SceneLoad],
 }
 
 impl Resolved<'_> {
@@ -81,7 +84,8 @@ impl Resolved<'_> {
             if run.states.is_none() {
                 let models = self.models(of, models, report)?;
                 let grips = self.grips.iter().flat_map(|grip| grip.in_run(of, &bodies)).collect();
-                return Some(Parts { of: of.clone(), bodies, initial, models, grips, recording: None });
+                let loads = self.loads.iter().flat_map(|load| load.in_run(of, &bodies)).map(Arc::new).collect();
+                return Some(Parts { of: of.clone(), bodies, initial, models, grips, loads, recording: None });
             }
             let (recorded, shown) = read?.shown(run, bodies.whole(), report)?;
             let (of, bodies, initial) = match shown {
@@ -99,7 +103,8 @@ impl Resolved<'_> {
                     (vec![self.bodies.len() + own.len() - 1], bodies, initial)
                 }
             };
-            Some(Parts { of, bodies, initial, models: Vec::new(), grips: Vec::new(), recording: Some(recorded) })
+            let (models, grips, loads) = (Vec::new(), Vec::new(), Vec::new());
+            Some(Parts { of, bodies, initial, models, grips, loads, recording: Some(recorded) })
         };
         // Mistakes of all runs are reported.
         let all: Vec<_> = (0..).zip(runs).zip(recordings).map(|((at, run), read)| parts(at, run, read)).collect();
@@ -156,7 +161,7 @@ impl Resolved<'_> {
             report.at(&key_path!["run", at, "kernel"], message, "remove it, or write \"reference\"");
             return None;
         }
-        let Parts { of, bodies, initial, models, grips, recording } = parts;
+        let Parts { of, bodies, initial, models, grips, loads, recording } = parts;
         let (name, colour) = (run.name.clone(), run.colour.map(|colour| colour.0));
         let place = 0;
         Some(Run {
@@ -167,6 +172,7 @@ impl Resolved<'_> {
             models,
             recording,
             grips,
+            loads,
             integrator,
             step,
             tolerance,

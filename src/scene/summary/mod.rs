@@ -40,6 +40,8 @@ pub struct SceneSummary {
     pub holds: Vec<String>,
     /// The nodes of each body that each `[[grab]]` drags, in a few words.
     pub grabs: Vec<String>,
+    /// The loads on each body in a few words.
+    pub loads: Vec<String>,
     /// The picture in a few words.
     pub picture: String,
 }
@@ -176,6 +178,7 @@ impl Scene {
             obstacles: self.obstacles_in_words(),
             holds: self.constraints(true),
             grabs: self.constraints(false),
+            loads: self.loads_in_words(),
             picture: self.picture(),
         }
     }

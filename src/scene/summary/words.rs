@@ -4,9 +4,10 @@ use super::{PartSummary, RunSummary, SceneSummary, coordinates};
 use crate::reading::captions::typed;
 use crate::reading::words::{count, ends, list, several, short};
 use crate::scene::{Run, Scene, SceneBody};
-use crate::sim::{Dimension, FrictionOf, Grip, Kernel, Motion, Obstacle, Shape};
+use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape};
 use glam::DVec3;
 use std::fmt;
+use std::ops::Range;
 
 impl Scene {
     /// Each obstacle in a few words.
@@ -14,20 +15,38 @@ impl Scene {
         self.obstacles.iter().map(|one| describe(one, self.dimension())).collect()
     }
 
-    /// The nodes of each body that are held or dragged, and when. A constraint is the same in all runs of a body.
+    /// The nodes of each body that are held or dragged, and when.
     pub(super) fn constraints(&self, held: bool) -> Vec<String> {
+        self.of_each_body(|run, own, body| {
+            let wanted = run.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
+            let words = wanted.filter_map(|grip| {
+                let nodes = own_nodes(&grip.nodes, own);
+                (!nodes.is_empty()).then(|| constraint(&nodes, body, grip, self.duration))
+            });
+            words.collect()
+        })
+    }
+
+    /// The loads on each body, and when.
+    pub(super) fn loads_in_words(&self) -> Vec<String> {
+        self.of_each_body(|run, own, body| {
+            let words = run.loads.iter().filter_map(|load| {
+                let nodes = own_nodes(load.nodes().unwrap_or_default(), own);
+                let Course { during, .. } = load.course();
+                let span = span(during.start, during.end, self.duration);
+                (!nodes.is_empty()).then(|| format!("{}, {span}", describe_load(load, &nodes, body, self.dimension())))
+            });
+            words.collect()
+        })
+    }
+
+    /// What is said of each body of the first simulated run that has it: constraints and loads are the same in all runs.
+    fn of_each_body(&self, say: impl Fn(&Run, &Range<usize>, &str) -> Vec<String>) -> Vec<String> {
         let of_body = |(at, body): (usize, &SceneBody)| {
             let place = |run: &'_ Run| run.of.iter().position(|&other| other == at);
             let mut simulated = self.runs.iter().filter(|run| run.recording.is_none());
             let (run, place) = simulated.find_map(|run| Some((run, place(run)?)))?;
-            let own = run.bodies.nodes(place);
-            let wanted = run.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
-            let words = wanted.filter_map(|grip| {
-                let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|node| own.contains(node));
-                let nodes: Vec<_> = nodes.map(|node| node - own.start).collect();
-                (!nodes.is_empty()).then(|| constraint(&nodes, &body.name, grip, self.duration))
-            });
-            Some(words.collect::<Vec<_>>())
+            Some(say(run, &run.bodies.nodes(place), &body.name))
         };
         self.bodies.iter().enumerate().filter_map(of_body).flatten().collect()
     }
@@ -126,16 +145,52 @@ fn path(motion: &Motion) -> String {
     }
 }
 
-/// A kinematic constraint on nodes of a body in words.
-fn constraint(nodes: &[usize], body: &str, grip: &Grip, duration: f64) -> String {
+/// The nodes of a body among some nodes of a run, counted from its first.
+fn own_nodes(nodes: &[u32], own: &Range<usize>) -> Vec<usize> {
+    let nodes = nodes.iter().map(|&node| node as usize).filter(|node| own.contains(node));
+    nodes.map(|node| node - own.start).collect()
+}
+
+/// Some nodes of a body in words.
+fn nodes_in_words(nodes: &[usize], body: &str) -> String {
     let nodes = match nodes {
         [only] => format!("node {only}"),
         several => format!("{} nodes", count(several.len() as u128)),
     };
     let of = if body.is_empty() { String::new() } else { format!(" of {body}") };
-    let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "on".into() };
-    let note = if grip.from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
-    format!("{nodes}{of} from {} s {until}{note}", short(grip.from))
+    nodes + &of
+}
+
+/// A span of time in words.
+fn span(from: f64, until: f64, duration: f64) -> String {
+    let end = if until.is_finite() { format!("until {} s", short(until)) } else { "on".into() };
+    let note = if from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
+    format!("from {} s {end}{note}", short(from))
+}
+
+/// A kinematic constraint on nodes of a body in words.
+fn constraint(nodes: &[usize], body: &str, grip: &Grip, duration: f64) -> String {
+    format!("{} {}", nodes_in_words(nodes, body), span(grip.from, grip.until, duration))
+}
+
+/// A load on nodes of a body in words, at its full share.
+fn describe_load(load: &Loading, nodes: &[usize], body: &str, dimension: Dimension) -> String {
+    let nodes = nodes_in_words(nodes, body);
+    let areas = if dimension == Dimension::Plane { ("sides", "N/m") } else { ("faces", "Pa") };
+    match load.pull() {
+        Pull::Dead(forces) => {
+            let sum = vector(&coordinates(forces.iter().sum(), dimension));
+            format!("force {sum} N on {nodes}")
+        }
+        Pull::Torque(torque, _) if dimension == Dimension::Plane => {
+            format!("torque {} N m on {nodes}", short(torque.z))
+        }
+        Pull::Torque(torque, _) => format!("torque {} N m on {nodes}", vector(&coordinates(*torque, dimension))),
+        Pull::Pressure(pressure, faces) => {
+            let (faces, (sides, unit)) = (count(faces.len() as u128), areas);
+            format!("pressure {} {unit} on {faces} {sides} with {nodes}", short(*pressure))
+        }
+    }
 }
 
 /// A name before the words about it; nothing without a name.
@@ -207,7 +262,7 @@ impl fmt::Display for SceneSummary {
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;
         }
-        for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs)] {
+        for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs), ("load", &self.loads)] {
             constraints.iter().try_for_each(|constraint| line(name, constraint))?;
         }
         line("picture", &self.picture)?;

@@ -7,7 +7,6 @@
 //! as long as it falls.
 
 use super::{BackwardEuler, MOST_LINEAR, MOST_NEWTON, Nodes, State, Step, dot};
-use crate::surroundings::Surroundings;
 use glam::DVec3;
 
 /// The shortest share of a Newton step, and one over the longest.
@@ -22,8 +21,8 @@ impl BackwardEuler {
     /// before. With damping each step has a potential of its own, so that only the residual tells whether it leads on.
     pub(super) fn descend(&mut self, step: &Step<'_>, state: &State, next: &mut State) {
         // Nor is there a potential of forces that change with positions.
-        let has_loads = !step.system.surroundings.loads.is_empty();
-        if has_loads || step.energy(&next.position, &state.memory.model).is_none() {
+        let changes = !step.system.surroundings.are_steady(step.interval);
+        if changes || step.energy(&next.position, &state.memory.model).is_none() {
             return;
         }
         let (found, before) = (next.velocity.clone(), dot(step, &self.residual, &self.residual));
@@ -64,9 +63,10 @@ impl BackwardEuler {
             let power = |of: &[DVec3]| dot(step, direction, of);
             drag = [&here.acceleration, &there.acceleration].map(|of| power(of) - power(&still.acceleration));
         }
-        let Surroundings { gravity, forces, .. } = &step.system.surroundings;
-        let push = |node: usize| forces.get(node).map_or(DVec3::ZERO, |force| *force / step.masses()[node]);
-        let free = |node: usize| state.velocity[node] + (*gravity + push(node)) * time;
+        let mut forces = vec![DVec3::ZERO; step.masses().len()];
+        step.system.surroundings.push(step.interval.end, &next.position, &mut forces);
+        let push = |node: usize| forces[node] / step.masses()[node];
+        let free = |node: usize| state.velocity[node] + (step.system.surroundings.gravity + push(node)) * time;
         let gained: Vec<_> = self.from.iter().enumerate().map(|(node, &from)| from - free(node)).collect();
         let slope = dot(step, direction, &gained) - time * drag[0];
         let curvature = dot(step, direction, direction) - time * drag[1];

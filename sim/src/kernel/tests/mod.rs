@@ -166,6 +166,7 @@ pub(super) const FREE: Around<'_> = Around {
     row: &|_| 0..0,
     resolve: &|_, _, _, _, _| {},
     impulses: None,
+    work: None,
     floor: None,
     apart: &[],
     grips: None,

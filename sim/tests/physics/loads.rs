@@ -1,0 +1,202 @@
+//! Loads: their forces, their work with every method, and the same bits however steps are divided.
+
+use super::INTEGRATORS;
+use super::support::{lattice, mass_spring, shape_based};
+use glam::DVec3;
+use localshape_sim::model::ElasticModel;
+use localshape_sim::{
+    Body, Course, Diagnostic, Ease, Integrator, Kernel, Load, Loading, Springs, State, Stepping, Surroundings, World,
+};
+use std::sync::Arc;
+
+const STEP: f64 = 1e-3;
+
+/// The sides of the surface of a body.
+fn surface(body: &Body) -> Vec<Vec<u32>> {
+    let faces = body.faces();
+    let outside = (0..faces.nodes.len()).filter(|&face| faces.outer[face].is_none());
+    outside.map(|face| faces.nodes[face].to_vec()).collect()
+}
+
+/// The nodes moved somewhere else, each differently.
+fn bent(body: &Body) -> Vec<DVec3> {
+    let wave = |at: DVec3| DVec3::new((9.0 * at.y).sin(), (7.0 * at.z + 1.0).cos(), (5.0 * at.x - 2.0).sin());
+    body.rest().iter().map(|&at| at + wave(at) * 0.02 + DVec3::new(3.0, -2.0, 1.0)).collect()
+}
+
+fn forces(load: &Loading, time: f64, position: &[DVec3]) -> Vec<DVec3> {
+    let mut forces = vec![DVec3::ZERO; position.len()];
+    load.add(time, position, &mut forces);
+    forces
+}
+
+fn torque(forces: &[DVec3], position: &[DVec3]) -> DVec3 {
+    forces.iter().zip(position).map(|(force, at)| at.cross(*force)).sum()
+}
+
+/// A torque has its size about any point and no sum, for nodes that lie in space, in a plane and on a line.
+#[test]
+fn torques_have_no_sum_and_their_size() {
+    let body = lattice(3, 0.1);
+    let position = bent(&body);
+    let asked = DVec3::new(2.0, -3.0, 0.5);
+    let all: Vec<u32> = (0..body.len() as u32).collect();
+    let weights: Vec<f64> = all.iter().map(|&node| f64::from(1 + node % 3)).collect();
+    let whole: f64 = weights.iter().sum();
+    let weights = weights.into_iter().map(|weight| weight / whole).collect();
+    let found = forces(&Loading::torque(all, weights, asked, Course::ALWAYS), 0.0, &position);
+    assert!(found.iter().sum::<DVec3>().length() < 1e-12 && torque(&found, &position).distance(asked) < 1e-12);
+    let on_a_line: Vec<_> = (0..4).map(|at| DVec3::X * f64::from(at)).collect();
+    let line = Loading::torque(vec![0, 1, 2, 3], vec![0.25; 4], DVec3::Z * 5.0, Course::ALWAYS);
+    let found = forces(&line, 0.0, &on_a_line);
+    assert!(torque(&found, &on_a_line).distance(DVec3::Z * 5.0) < 1e-12, "{found:?}");
+    assert!(found.iter().sum::<DVec3>().length() < 1e-14);
+}
+
+/// A pressure on a closed surface pushes and turns it nowhere. Its force on a node is the pressure times the change of the volume.
+#[test]
+fn pressures_are_the_gradient_of_the_volume() {
+    let body = lattice(2, 0.1);
+    let (mut position, faces) = (bent(&body), surface(&body));
+    let load = Loading::pressure(faces.clone(), -300.0, Course::ALWAYS);
+    let found = forces(&load, 0.0, &position);
+    let size: f64 = found.iter().map(|force| force.length()).sum();
+    assert!(found.iter().sum::<DVec3>().length() < 1e-13 * size);
+    let middle = DVec3::new(3.0, -2.0, 1.0);
+    let about: Vec<_> = position.iter().map(|at| *at - middle).collect();
+    assert!(torque(&found, &about).length() < 1e-13 * size);
+    // Of each fan about the mean of its corners.
+    let volume = |position: &[DVec3]| -> f64 {
+        let of_face = |face: &Vec<u32>| {
+            let at = |corner: usize| position[face[corner % face.len()] as usize] - middle;
+            let mean = (0..face.len()).map(at).sum::<DVec3>() / face.len() as f64;
+            (0..face.len()).map(|corner| mean.dot(at(corner).cross(at(corner + 1))) / 6.0).sum::<f64>()
+        };
+        faces.iter().map(of_face).sum()
+    };
+    for (node, axis) in (0..body.len()).flat_map(|node| [0, 1, 2].map(|axis| (node, axis))) {
+        let at = position[node][axis];
+        let [more, less] = [1e-5, -1e-5].map(|step| {
+            position[node][axis] = at + step;
+            volume(&position)
+        });
+        position[node][axis] = at;
+        let expected = 300.0 * (more - less) / 2e-5;
+        assert!((found[node][axis] - expected).abs() < 1e-7, "{node} {axis}: {} {expected}", found[node][axis]);
+    }
+}
+
+/// In the plane a pressure acts at right angles to sides, towards the body at their left.
+#[test]
+fn pressures_push_sides_of_the_plane() {
+    let position = [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y];
+    let load = Loading::pressure(vec![vec![0, 1]], 10.0, Course::ALWAYS);
+    assert_eq!(forces(&load, 0.0, &position), [DVec3::Y * 10.0, DVec3::Y * 10.0, DVec3::ZERO]);
+}
+
+#[test]
+fn courses_begin_rise_and_end() {
+    let ramp = Course { during: 1.0..3.0, keys: vec![[1.0, 0.0], [2.0, 1.0]], ease: Ease::Linear };
+    let times = [0.9, 1.0, 1.25, 2.0, 2.9, 3.0];
+    assert_eq!(times.map(|time| ramp.share(time)), [0.0, 0.0, 0.25, 1.0, 1.0, 0.0]);
+    let smooth = Course { ease: Ease::Smooth, ..ramp };
+    assert!((smooth.share(1.25) - 0.146_446_609_406_726_24).abs() < 1e-15);
+    assert_eq!(Course::ALWAYS.share(1e9), 1.0);
+}
+
+/// A push that begins and ends, a torque that rises, a pressure on all sides, and a pull for ever.
+fn loads(body: &Body) -> Vec<Arc<dyn Load>> {
+    let all: Vec<u32> = (0..body.len() as u32).collect();
+    let count = all.len() as f64;
+    let rise = Course { during: 0.0..f64::INFINITY, keys: vec![[0.0, 0.0], [0.05, 1.0]], ease: Ease::Smooth };
+    let keys = vec![[0.011, 0.0], [0.02, 1.0], [0.029, 0.0]];
+    let push = Course { during: 0.011..0.0305, keys, ease: Ease::Linear };
+    vec![
+        Arc::new(Loading::dead(vec![0, 5], vec![DVec3::new(30.0, -20.0, 10.0); 2], push)),
+        Arc::new(Loading::torque(all.clone(), vec![1.0 / count; all.len()], DVec3::new(4.0, 1.0, -2.0), rise.clone())),
+        Arc::new(Loading::pressure(surface(body), 2e3, rise)),
+        Arc::new(Loading::dead(vec![7, 20], vec![DVec3::Y * 9.0, DVec3::Z * 4.0], Course::ALWAYS)),
+    ]
+}
+
+/// Worlds of every method and code, with loads.
+fn worlds(step: f64) -> Vec<(String, Integrator, World)> {
+    let body = lattice(3, 0.1);
+    let springs = mass_spring(&body, 1e3, 0.0, Springs::All);
+    let models: [Arc<dyn ElasticModel>; 2] = [Arc::new(shape_based(1e3, 0.0)), Arc::new(springs)];
+    let mut all = Vec::new();
+    for (model, integrator) in models.iter().flat_map(|model| INTEGRATORS.map(|one| (model, one))) {
+        for kernel in [Kernel::Fast, Kernel::Reference] {
+            let around = Surroundings { loads: loads(&body), gravity: DVec3::Y * -0.3, ..Surroundings::default() };
+            let stepping = Stepping { kernel, ..Stepping::new(integrator, step) };
+            let world = World::new(&body, State::at_rest(body.rest().to_vec()), &**model, around, stepping);
+            all.push((format!("{integrator:?} {kernel:?} {model:?}"), integrator, world));
+        }
+    }
+    all
+}
+
+/// The energy that loads have brought is their work, to the order of the method.
+#[test]
+fn work_is_the_energy_that_loads_bring() {
+    let error = |world: &mut World, step: f64| {
+        let start = world.some_diagnostics(&[Diagnostic::Energy]).energy;
+        world.advance((0.08 / step).round() as u64);
+        let now = world.diagnostics();
+        ((now.energy - start - now.work) / now.work, now.work)
+    };
+    for ((text, integrator, mut coarse), (_, _, mut fine)) in worlds(STEP).into_iter().zip(worlds(STEP / 2.0)) {
+        let ([one, work], [other, _]) = (error(&mut coarse, STEP).into(), error(&mut fine, STEP / 2.0).into());
+        assert!(work > 3.0, "{text}: {work}");
+        let is_first =
+            matches!(integrator, Integrator::SemiImplicitEuler | Integrator::ExplicitEuler | Integrator::BackwardEuler);
+        // Of half the step; the sum over the way of the nodes is of second order.
+        let (most, less) = if is_first { (0.1, 0.3..0.6) } else { (2e-4, 0.24..0.26) };
+        assert!(one.abs() < most && less.contains(&(other / one)), "{text}: {one:e} {other:e}");
+    }
+}
+
+/// Bits do not depend on the division into calls, on copies, nor on a state that was written and read.
+#[test]
+fn work_and_states_do_not_depend_on_the_division_into_calls() {
+    for (text, _, mut whole) in worlds(STEP) {
+        let mut parts = whole.clone();
+        whole.advance(60);
+        for count in [1, 9, 3, 20, 17, 2, 8] {
+            parts.advance(count);
+            let mut copy = parts.clone();
+            let state = State::from_bytes(&parts.state().to_bytes()).expect("a state");
+            copy.set_state(state);
+            parts = copy;
+        }
+        assert_eq!(parts.state(), whole.state(), "{text}");
+        assert_eq!(parts.diagnostics().work.to_bits(), whole.diagnostics().work.to_bits(), "{text}");
+    }
+}
+
+/// A steady load is the same force on nodes given otherwise, to the bit.
+#[test]
+fn steady_loads_are_forces() {
+    let body = lattice(3, 0.1);
+    let model = shape_based(1e3, 0.0);
+    for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet] {
+        let stepping = Stepping::new(integrator, STEP);
+        let free =
+            || World::new(&body, State::at_rest(body.rest().to_vec()), &model, Surroundings::default(), stepping);
+        let (mut loaded, mut pushed) = (free(), free());
+        assert!(free().diagnostics().work.is_nan(), "without loads");
+        let pull = DVec3::new(3.0, -2.0, 1.0);
+        loaded.set_loads(vec![Arc::new(Loading::dead(vec![1, 4], vec![pull; 2], Course::ALWAYS))]);
+        pushed.push(&[1, 4], pull).expect("nodes");
+        for world in [&mut loaded, &mut pushed] {
+            world.advance(50);
+        }
+        assert_eq!(loaded.state(), pushed.state());
+        // What has been done stays where loads change.
+        let before = loaded.diagnostics().work;
+        loaded.set_loads(Vec::new());
+        pushed.set_forces(vec![DVec3::ZERO; body.len()]).expect("forces");
+        pushed.advance(10);
+        assert!(before > 0.0 && (pushed.diagnostics().work - before).abs() < 1e-12 * before);
+    }
+}

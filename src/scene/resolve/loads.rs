@@ -1,0 +1,312 @@
+//! Loads: on which nodes and faces of which bodies they act, and when.
+
+use super::nodes::{Layered, select};
+use super::vector;
+use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::words::{count, list};
+use crate::scene::SceneBody;
+use crate::scene::file::{LoadFile, NodesFile, TorqueFile};
+use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading, around, for_each_area};
+use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A load: on each body of the scene, if it has one.
+#[derive(Debug)]
+pub(super) struct SceneLoad {
+    of_bodies: Vec<Option<OnBody>>,
+    course: Course,
+}
+
+/// A load on a body, whose nodes are counted from its first.
+#[derive(Debug)]
+enum OnBody {
+    Dead(Vec<(u32, DVec3)>),
+    Torque(Vec<(u32, f64)>, DVec3),
+    Pressure(Vec<Vec<u32>>, f64),
+}
+
+impl SceneLoad {
+    /// The loads in a run of some of the bodies.
+    pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = Loading> {
+        of.iter().enumerate().filter_map(|(at, &body)| {
+            let (first, course) = (bodies.nodes(at).start as u32, self.course.clone());
+            Some(match self.of_bodies[body].as_ref()? {
+                OnBody::Dead(forces) => {
+                    let (nodes, forces) = forces.iter().map(|&(node, force)| (first + node, force)).unzip();
+                    Loading::dead(nodes, forces, course)
+                }
+                OnBody::Torque(weights, torque) => {
+                    let (nodes, weights) = weights.iter().map(|&(node, weight)| (first + node, weight)).unzip();
+                    Loading::torque(nodes, weights, *torque, course)
+                }
+                OnBody::Pressure(faces, pressure) => {
+                    let moved = faces.iter().map(|face| face.iter().map(|node| first + node).collect());
+                    Loading::pressure(moved.collect(), *pressure, course)
+                }
+            })
+        })
+    }
+}
+
+/// The loads, or `None` after reporting every mistake in them.
+pub(super) fn resolve(
+    loads: &[Option<LoadFile>],
+    bodies: &[SceneBody],
+    report: &mut Collector<'_>,
+) -> Option<Vec<SceneLoad>> {
+    let layered: Vec<_> = bodies.iter().map(Layered::new).collect();
+    let load = |(at, typed): (usize, &Option<LoadFile>)| {
+        let path = key_path!["load", at];
+        let reading = Reading { typed: typed.as_ref()?, path: &path, bodies, layered: &layered };
+        let (course, kind) = (reading.course(report), reading.kind(report));
+        let of_bodies = reading.on_bodies(kind?, report)?;
+        Some(SceneLoad { of_bodies, course: course? })
+    };
+    let all: Vec<_> = loads.iter().enumerate().map(load).collect();
+    all.into_iter().collect()
+}
+
+/// Reports loads that are shorter than a time step (s), which would have no effect.
+pub(super) fn check_steps(loads: &[Option<LoadFile>], step: f64, report: &mut Collector<'_>) {
+    for (at, load) in loads.iter().enumerate() {
+        let Some((from, until)) = load.as_ref().and_then(|load| Some((load.from, load.until?))) else { continue };
+        if (0.0..step).contains(&(until - from)) {
+            let message = format!("`load[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
+            report.at(&key_path!["load", at, "until"], message, "make it longer, or it does nothing".to_owned());
+        }
+    }
+}
+
+/// What a load does, and its key.
+enum Kind {
+    Force(DVec3),
+    Traction(DVec3),
+    Pressure(f64),
+    Acceleration(DVec3),
+    Torque(DVec3),
+}
+
+/// The nodes or the faces of a body with their weights.
+type Weighted = Vec<(u32, f64)>;
+
+/// A load that is read.
+struct Reading<'a> {
+    typed: &'a LoadFile,
+    path: &'a [PathPart<'a>],
+    bodies: &'a [SceneBody],
+    layered: &'a [Layered<'a>],
+}
+
+impl Reading<'_> {
+    fn course(&self, report: &mut Collector<'_>) -> Option<Course> {
+        let LoadFile { from, until, ramp, keys, ease, .. } = self.typed;
+        let (name, until) = (written(self.path), until.unwrap_or(f64::INFINITY));
+        if until <= *from {
+            let message = format!("`{name}` ends at {until} s, not later than it begins at {from} s");
+            report.at(&key_path![self.path; "until"], message, None);
+            return None;
+        }
+        let rise = ramp.as_ref().map(|ramp| vec![[*from, 0.0], [from + ramp.0, 1.0]]);
+        let typed = keys.as_ref().map(|keys| keys.iter().map(|key| [key.time, key.share]).collect::<Vec<_>>());
+        if rise.is_some() && typed.is_some() {
+            let message = format!("`{name}` has `ramp` and `keys`, which both say how it rises");
+            report.at_key(&key_path![self.path; "ramp"], message, "remove one of them");
+            return None;
+        }
+        let keys = typed.or(rise).unwrap_or_default();
+        if let Some(at) = (1..keys.len()).find(|&at| keys[at][0] <= keys[at - 1][0]) {
+            let path = key_path![self.path; "keys", at];
+            let [before, time] = [keys[at - 1][0], keys[at][0]];
+            let message =
+                format!("`{}` is at {time} s, not later than the key before it at {before} s", written(&path));
+            report.at(&key_path![path; "time"], message, "list the keys in rising order of time");
+            return None;
+        }
+        let ease = if keys.is_empty() { Ease::Linear } else { *ease };
+        Some(Course { during: *from..until, keys, ease })
+    }
+
+    /// The only kind that is typed.
+    fn kind(&self, report: &mut Collector<'_>) -> Option<Kind> {
+        let LoadFile { force, traction, pressure, acceleration, torque, .. } = self.typed;
+        let dimension = self.bodies.first()?.body.dimension();
+        let keys = ["force", "traction", "pressure", "acceleration", "torque"];
+        let given = [force.is_some(), traction.is_some(), pressure.is_some(), acceleration.is_some(), torque.is_some()];
+        let given: Vec<_> = keys.into_iter().zip(given).filter_map(|(key, is_given)| is_given.then_some(key)).collect();
+        let [only] = given[..] else {
+            let (name, all) = (written(self.path), list(&keys, "or", |key| format!("`{key}`")));
+            let (message, help) = match given.len() {
+                0 => (format!("`{name}` has no load; expected one of {all}"), "such as force = [0, -10, 0]"),
+                _ => {
+                    let given = list(&given, "and", |key| format!("`{key}`"));
+                    (format!("`{name}` has {given}; expected one load"), "write another [[load]] for each of them")
+                }
+            };
+            report.at(self.path, message, help.to_owned());
+            return None;
+        };
+        let path = key_path![self.path; only];
+        let typed = [force, traction, acceleration].into_iter().flatten().next();
+        Some(match (only, torque) {
+            ("force", _) => Kind::Force(vector(typed?, dimension, &path, report)?),
+            ("traction", _) => Kind::Traction(vector(typed?, dimension, &path, report)?),
+            ("acceleration", _) => Kind::Acceleration(vector(typed?, dimension, &path, report)?),
+            (_, Some(torque)) => Kind::Torque(self.torque(torque, dimension, &path, report)?),
+            _ => Kind::Pressure((*pressure)?),
+        })
+    }
+
+    fn torque(
+        &self,
+        typed: &TorqueFile,
+        dimension: Dimension,
+        path: &[PathPart<'_>],
+        report: &mut Collector<'_>,
+    ) -> Option<DVec3> {
+        match (typed, dimension) {
+            (TorqueFile::Vector(typed), Dimension::Space) => vector(typed, dimension, path, report),
+            (TorqueFile::Number(size), Dimension::Plane) => Some(DVec3::Z * *size),
+            (_, dimension) => {
+                let (body, help) = match dimension {
+                    Dimension::Space => ("a number, but the body is in space", "such as torque = [0, 0, 5]"),
+                    Dimension::Plane => ("a vector, but the body is in the plane", "such as torque = 5"),
+                };
+                report.at(path, format!("`{}` is {body}", written(path)), help);
+                None
+            }
+        }
+    }
+
+    /// The load on each body that has one; `None` after a mistake.
+    fn on_bodies(&self, kind: Kind, report: &mut Collector<'_>) -> Option<Vec<Option<OnBody>>> {
+        let LoadFile { nodes, faces, body, .. } = self.typed;
+        let needs_faces = match kind {
+            Kind::Traction(_) => Some("traction"),
+            Kind::Pressure(_) => Some("pressure"),
+            _ => None,
+        };
+        if let (Some(key), Some(_)) = (needs_faces, nodes) {
+            let message = format!("`{}` has a `{key}`, which acts on faces, with `nodes`", written(self.path));
+            report.at_key(&key_path![self.path; "nodes"], message, "write `faces` in place of `nodes`");
+            return None;
+        }
+        let all = NodesFile::Named("all".to_owned());
+        let key = if faces.is_some() || needs_faces.is_some() { "faces" } else { "nodes" };
+        let chosen = faces.as_ref().or(nodes.as_ref()).unwrap_or(&all);
+        let is_all = matches!(chosen, NodesFile::Named(name) if name == "all");
+        let selected = select(body.as_deref(), (!is_all).then_some(chosen), self.layered, (self.path, key), report)?;
+        let mut of_bodies = Vec::new();
+        for (body, nodes) in self.bodies.iter().zip(selected) {
+            let faces = if key == "faces" { faces_among(&body.body, &nodes) } else { Vec::new() };
+            of_bodies.push(match (nodes.is_empty(), key, faces.is_empty()) {
+                (true, ..) => None,
+                (false, "faces", true) => {
+                    self.report_no_faces(body, nodes.len(), report);
+                    return None;
+                }
+                _ => Some(on_body(&kind, &body.body, nodes, faces)),
+            });
+            if let Some(Some(OnBody::Torque(weights, torque))) = of_bodies.last() {
+                self.check_arms(body, weights, *torque, report)?;
+            }
+        }
+        Some(of_bodies)
+    }
+
+    fn report_no_faces(&self, body: &SceneBody, nodes: usize, report: &mut Collector<'_>) {
+        let (path, body_words) = (key_path![self.path; "faces"], body.in_words());
+        let has_faces = !surface(&body.body).is_empty();
+        let (message, help) = if has_faces {
+            let nodes = count(nodes as u128);
+            let message = format!(
+                "`{}` takes {nodes} nodes of {body_words}, but no face has all corners among them",
+                written(&path)
+            );
+            (message, "choose a larger part of the surface, or write `nodes` for a force on nodes")
+        } else {
+            let message =
+                format!("`{}` acts on faces, but {body_words} has none: it is made of bars", written(self.path));
+            (message, "write a `force` on `nodes`")
+        };
+        report.at(if has_faces { &path } else { self.path }, message, help.to_owned());
+    }
+
+    /// Reports a torque about a line on which all nodes lie at rest.
+    fn check_arms(
+        &self,
+        body: &SceneBody,
+        weights: &Weighted,
+        torque: DVec3,
+        report: &mut Collector<'_>,
+    ) -> Option<()> {
+        let rest = body.body.rest();
+        let centre: DVec3 = weights.iter().map(|&(node, weight)| rest[node as usize] * weight).sum();
+        let farthest = weights.iter().map(|&(node, _)| (rest[node as usize] - centre).cross(torque).length());
+        let most = farthest.fold(0.0, f64::max);
+        if most > 1e-9 * body.body.extent() * torque.length() || torque == DVec3::ZERO {
+            return Some(());
+        }
+        let message = format!(
+            "`{}` has no arm: all its nodes of {} lie on its axis",
+            written(&key_path![self.path; "torque"]),
+            body.in_words()
+        );
+        report.at(&key_path![self.path; "torque"], message, "choose nodes beside the axis");
+        None
+    }
+}
+
+/// A load on chosen nodes or faces of a body.
+fn on_body(kind: &Kind, body: &Body, nodes: Vec<u32>, faces: Vec<Vec<u32>>) -> OnBody {
+    let weights: Weighted = match faces.is_empty() {
+        true => nodes.iter().map(|&node| (node, 1.0)).collect(),
+        false => areas(&faces, body.rest()),
+    };
+    let whole: f64 = weights.iter().map(|(_, weight)| weight).sum();
+    let dead = |of: &dyn Fn(u32, f64) -> DVec3| {
+        OnBody::Dead(weights.iter().map(|&(node, weight)| (node, of(node, weight))).collect())
+    };
+    match *kind {
+        Kind::Force(force) => dead(&|_, weight| force * (weight / whole)),
+        Kind::Traction(traction) => dead(&|_, area| traction * area),
+        Kind::Acceleration(acceleration) => dead(&|node, _| acceleration * body.mass()[node as usize]),
+        Kind::Torque(torque) => {
+            OnBody::Torque(weights.iter().map(|&(node, weight)| (node, weight / whole)).collect(), torque)
+        }
+        Kind::Pressure(pressure) => OnBody::Pressure(faces, pressure),
+    }
+}
+
+/// The corners of faces in rising order, each with its part of their areas (m², in the plane m).
+fn areas(faces: &[Vec<u32>], rest: &[DVec3]) -> Weighted {
+    let mut all = BTreeMap::new();
+    for face in faces {
+        let mut whole = DVec3::ZERO;
+        for_each_area(face, rest, |_, area| whole += area);
+        let normal = whole.normalize_or_zero();
+        for_each_area(face, rest, |node, area| *all.entry(node).or_insert(0.0) += area.dot(normal));
+    }
+    all.into_iter().collect()
+}
+
+/// The faces of the surface of the elements of a body, or their sides in the plane, with all corners among some nodes.
+fn faces_among(body: &Body, nodes: &[u32]) -> Vec<Vec<u32>> {
+    let mut is_chosen = vec![false; body.len()];
+    nodes.iter().for_each(|&node| is_chosen[node as usize] = true);
+    let mut faces = surface(body);
+    faces.retain(|face| face.iter().all(|&node| is_chosen[node as usize]));
+    faces
+}
+
+/// The faces of the surface of the elements of a body, counter-clockwise seen from outside; in the plane their sides, with the body at the left.
+fn surface(body: &Body) -> Vec<Vec<u32>> {
+    let faces = body.faces();
+    let outside = (0..faces.nodes.len()).filter(|&face| faces.inner[face].is_some() && faces.outer[face].is_none());
+    let outside = outside.map(|face| faces.nodes[face].to_vec());
+    if body.dimension() == Dimension::Space {
+        return outside.collect();
+    }
+    let sides: Vec<[u32; 2]> = outside.flat_map(|face| around(&face).collect::<Vec<_>>()).collect();
+    let known: BTreeSet<_> = sides.iter().copied().collect();
+    sides.into_iter().filter(|&[from, to]| !known.contains(&[to, from])).map(Vec::from).collect()
+}
