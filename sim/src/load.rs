@@ -74,7 +74,7 @@ impl Course {
     }
 
     /// The greatest share, without its sign.
-    fn greatest(&self) -> f64 {
+    pub fn greatest(&self) -> f64 {
         if self.keys.is_empty() {
             1.0
         } else {

@@ -49,8 +49,8 @@ pub struct View {
     #[serde(serialize_with = "open")]
     #[schemars(with = "ColourFile")]
     pub colour: Option<ColourScale>,
-    /// Scale of the arrows of displacements and contacts. At 1 an arrow of a displacement ends at its node, and one of a force as large as the
-    /// mean weight of bodies on Earth is as long as half of the largest body.
+    /// Scale of the arrows of displacements, contacts and loads. At 1 an arrow of a displacement ends at its node, one of a force of contact as
+    /// large as the mean weight of bodies on Earth is as long as half of the largest body, and that of the largest load is .4 of it.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
@@ -276,6 +276,8 @@ words! {
         /// Dots where bodies touch, and arrows for the mean force of each obstacle and body on each body, in the interval of the row
         /// of `diagnostics.csv`.
         contacts,
+        /// An arrow for each force of a load, arrows on faces under pressure, and an arc for each torque.
+        loads,
         /// The edges of the elements that carry a fine surface, as lines over it. Surfaces are drawn, too.
         cage,
     }

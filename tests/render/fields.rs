@@ -11,8 +11,15 @@ use localshape::scene::Scene;
 use localshape::sim::{Divergence, Field, Status};
 
 const NOTHING: Visible = Visible::NONE;
-const EVERYTHING: Visible =
-    Visible { surfaces: true, nodes: true, springs: true, displacements: true, contacts: true, cage: true };
+const EVERYTHING: Visible = Visible {
+    surfaces: true,
+    nodes: true,
+    springs: true,
+    displacements: true,
+    contacts: true,
+    loads: true,
+    cage: true,
+};
 const FIELDS: [Field; 4] = [Field::Strain, Field::Displacement, Field::Speed, Field::ElasticEnergy];
 
 /// The scene of Fig. 4(b) with a field, and one of its frames.

@@ -68,7 +68,7 @@ impl Overlay for Contacts {
 }
 
 /// The length of arrows (m) for each newton.
-fn metres_a_newton(scene: &Scene) -> f64 {
+pub(super) fn metres_a_newton(scene: &Scene) -> f64 {
     let masses = scene.bodies.iter().map(|body| body.body.mass().iter().sum::<f64>());
     let mass = masses.sum::<f64>() / scene.bodies.len() as f64;
     let size = scene.bodies.iter().map(|body| body.body.extent()).fold(0.0, f64::max);

@@ -5,6 +5,7 @@ mod contacts;
 mod displacements;
 mod ghost;
 mod grips;
+mod loads;
 mod paths;
 
 pub(super) use displacements::bearers;
@@ -17,7 +18,8 @@ use crate::picture::legend::{Legend, Sample};
 use crate::picture::{Framing, Item};
 
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
-pub(super) const MARKS: [&dyn Overlay; 3] = [&grips::Grips, &displacements::Displacements, &contacts::Contacts];
+pub(super) const MARKS: [&dyn Overlay; 4] =
+    [&grips::Grips, &displacements::Displacements, &loads::Loads, &contacts::Contacts];
 /// The overlays above them.
 pub(super) const CURVES: [&dyn Overlay; 2] = [&ghost::GhostOutline, &paths::Paths];
 

@@ -1,0 +1,174 @@
+//! Loads: an arrow for each force on nodes, arrows on faces under pressure, and an arc for each torque.
+
+use super::{KeyPlace, Overlay, contacts};
+use crate::look::View;
+use crate::picture::compose::Composer;
+use crate::picture::compose::draft::Draft;
+use crate::picture::layout::steps::{FREE, RING, STRONG};
+use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::order::farthest_first;
+use crate::picture::{Item, arrows, number};
+use crate::reading::captions::quantity;
+use crate::scene::Scene;
+use crate::sim::{Dimension, Load, Loading, Pull, for_each_area};
+use glam::{DQuat, DVec3};
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// The length of the arrow of the largest load, and of one of the largest pressure, in sizes of the largest body.
+const LENGTH: [f64; 2] = [0.4, 0.12];
+/// Of a whole torque: the radius of its arc in sizes of the largest body, and the part of a turn.
+const ARC: [f64; 2] = [0.3, 0.75];
+/// Pieces of an arc.
+const PIECES: usize = 32;
+
+/// Arrows of loads.
+pub(super) struct Loads;
+
+impl Overlay for Loads {
+    fn is_explained(&self, view: &View) -> bool {
+        view.visible.loads
+    }
+
+    /// An arrow with its force or its pressure in words.
+    fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
+        let (scene, view) = (composer.scene, &composer.scene.view);
+        let pixels = composer.pixels_a_metre(place.viewport, place.framing, place.scale);
+        let room = place.legend.arrow_length() / pixels;
+        let scales = Scales::new(scene);
+        let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
+        let (value, metres, unit) = match (force, pressure) {
+            (Some(force), _) => (number::round_below(force), scales.newton, "N"),
+            (None, Some(pressure)) => (number::round_below(pressure), scales.pascal, scales.unit),
+            (None, None) => return None,
+        };
+        let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
+        let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
+        let names = vec![format!("load {}{also}", quantity(value, unit)).into()];
+        let size = arrows::size(pixels * view.side, place.scale.unit);
+        Some(Sample { names, kind: SampleKind::Arrow([value * metres * pixels, size]) })
+    }
+
+    /// A force that pushes its body ends at the middle of its nodes, and one that pulls it begins there.
+    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
+        if !draft.scene.view.visible.loads || draft.diverged || draft.position.is_empty() {
+            return;
+        }
+        let scales = Scales::new(draft.scene);
+        let mut found = Vec::new();
+        for load in &draft.scene.runs[draft.run.run].loads {
+            let share = load.course().share(draft.run.snapshot.time);
+            if share == 0.0 {
+                continue;
+            }
+            match load.pull() {
+                Pull::Dead(forces) => {
+                    let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
+                    let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
+                    let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
+                    found.extend(draft.arrow_of_load(start, way));
+                }
+                Pull::Pressure(pressure, faces) => {
+                    let length = scales.pascal * pressure * share;
+                    let all: Vec<u32> = (0..faces.len() as u32).collect();
+                    let chosen = arrows::bearers(&all).into_iter().map(|face| &faces[face as usize]);
+                    found.extend(chosen.filter_map(|face| draft.pressed(face, length)));
+                }
+                Pull::Torque(torque, _) => {
+                    let turn = ARC[1] * TAU * share / load.course().greatest();
+                    found.extend(draft.arc(
+                        draft.middle_of(load),
+                        torque.normalize_or_zero(),
+                        [ARC[0] * scales.size, turn],
+                    ));
+                }
+            }
+        }
+        marks.extend(farthest_first(found));
+    }
+}
+
+/// The scales of arrows.
+struct Scales {
+    /// The length of an arrow (m) for each newton, and for each pascal; zero without such a load.
+    newton: f64,
+    pascal: f64,
+    /// The unit of pressures.
+    unit: &'static str,
+    /// The size of the largest body (m).
+    size: f64,
+}
+
+impl Scales {
+    fn new(scene: &Scene) -> Self {
+        let (mut force, mut pressure) = (0.0_f64, 0.0_f64);
+        for load in scene.runs.iter().flat_map(|run| &run.loads) {
+            let most = load.course().greatest();
+            match load.pull() {
+                Pull::Dead(forces) => force = force.max(most * forces.iter().sum::<DVec3>().length()),
+                Pull::Pressure(size, _) => pressure = pressure.max(most * size.abs()),
+                Pull::Torque(..) => {}
+            }
+        }
+        let size = scene.bodies.iter().map(|body| body.body.extent()).fold(0.0, f64::max);
+        let scale = |[length, most]: [f64; 2]| {
+            if most > 0.0 { scene.view.arrow_scale * length * size / most } else { 0.0 }
+        };
+        // Forces of contact have the same scale where they are shown, too.
+        let newton = match scene.view.visible.contacts {
+            true if force > 0.0 => contacts::metres_a_newton(scene),
+            _ => scale([LENGTH[0], force]),
+        };
+        let unit = if scene.dimension() == Dimension::Plane { "N/m" } else { "Pa" };
+        Self { newton, pascal: scale([LENGTH[1], pressure]), unit, size }
+    }
+}
+
+impl Draft<'_> {
+    /// The middle of the nodes of a load (m).
+    fn middle_of(&self, load: &Loading) -> DVec3 {
+        let nodes = load.nodes().unwrap_or_default();
+        nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len().max(1) as f64
+    }
+
+    /// The nodes of the body of a load.
+    fn own_nodes(&self, load: &Loading) -> Range<usize> {
+        let bodies = self.bodies.assembly();
+        let first = load.nodes().and_then(|nodes| nodes.first()).map_or(0, |&node| node as usize);
+        bodies.nodes(bodies.body_of_node(first))
+    }
+
+    /// An arrow along a way (m), with its depth.
+    fn arrow_of_load(&self, start: DVec3, way: DVec3) -> Option<(f64, Item)> {
+        let size = arrows::size(self.element, self.scale.unit);
+        let (to, depth) = self.lens.project(start + way)?;
+        let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, (RING * size).max(FREE))?;
+        let palette = &self.composer.palette;
+        Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(part)?))
+    }
+
+    /// An arrow of a length (m) on the outside of a face that faces the viewer: towards the face, or away from it if the length is negative.
+    fn pressed(&self, face: &[u32], length: f64) -> Option<(f64, Item)> {
+        let (mut area, count) = (DVec3::ZERO, face.len() as f64);
+        for_each_area(face, &self.position, |_, part| area += part);
+        let at = face.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / count;
+        let out = area.normalize_or_zero() * length.abs();
+        let faces_viewer = self.flat || self.lens.facing(at, area) > 0.0;
+        let [start, way] = if length > 0.0 { [at + out, -out] } else { [at, out] };
+        faces_viewer.then(|| self.arrow_of_load(start, way))?
+    }
+
+    /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.
+    fn arc(&self, middle: DVec3, axis: DVec3, [radius, angle]: [f64; 2]) -> Option<(f64, Item)> {
+        let start = axis.any_orthonormal_vector() * radius;
+        let at = |piece: usize| middle + DQuat::from_axis_angle(axis, angle * piece as f64 / PIECES as f64) * start;
+        let pixels: Vec<_> = (0..=PIECES).map(|piece| self.pixel(at(piece))).collect::<Option<_>>()?;
+        let size = arrows::size(self.element, self.scale.unit);
+        let palette = &self.composer.palette;
+        let [.., before, _, end] = pixels[..] else { return None };
+        let curve: Vec<[f64; 2]> = pixels[..PIECES].iter().map(|pixel| pixel.to_array()).collect();
+        let line = Item::curve(&curve, STRONG * self.scale.unit, &[], palette.text);
+        let head = arrows::arrow([before, end], size, palette.text, palette.background);
+        Some((self.lens.project(middle)?.1, Item::part("arc", [line, head])))
+    }
+}
