@@ -15,10 +15,10 @@ pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
 /// What is known of what acts on a body from outside.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outside {
-    /// The mean force of contact (N).
-    pub(super) force: Option<DVec3>,
-    /// Its torque about the origin (N m).
-    pub(super) torque: Option<DVec3>,
+    /// The mean force of contact (N) and its torque about the origin (N m).
+    pub(super) contact: Option<[DVec3; 2]>,
+    /// The same of kinematic constraints.
+    pub(super) grips: Option<[DVec3; 2]>,
     /// Its triangles that cross its own or those of obstacles, and those that cross those of other bodies.
     pub(super) crossings: Option<[usize; 2]>,
     /// The work of loads since the start (J).
@@ -145,6 +145,14 @@ impl<'a> Facts<'_, 'a> {
     fn total_of_vectors(self, of_body: impl Fn(&BodyFacts<'a>) -> DVec3) -> DVec3 {
         let of_bodies: Vec<DVec3> = self.bodies.iter().map(of_body).collect();
         DVec3::from_array([0, 1, 2].map(|axis| total(of_bodies.iter().map(|sum| sum[axis]))))
+    }
+
+    /// The sum of vectors that bodies have or not; NaN if none has one.
+    fn told(self, of_body: impl Fn(&BodyFacts<'a>) -> Option<DVec3>) -> DVec3 {
+        if self.bodies.iter().all(|body| of_body(body).is_none()) {
+            return DVec3::NAN;
+        }
+        self.total_of_vectors(|body| of_body(body).unwrap_or_default())
     }
 
     /// The sum of a number of each body.
@@ -369,11 +377,18 @@ diagnostics! { facts:
 
     /// Mean force of obstacles and other bodies where they touch (N), in the last interval between rows, or else frames; as one number, its
     /// length.
-    ContactForce, contact_force: DVec3, "contact force", "N", Frames = facts.total_of_vectors(|body| body.outside.force.unwrap_or(DVec3::NAN));
+    ContactForce, contact_force: DVec3, "contact force", "N", Frames = facts.told(|body| body.outside.contact.map(|[force, _]| force));
 
     /// Its torque about the origin (N m); as one number, its length.
     ContactTorque, contact_torque: DVec3, "contact torque", "N m", Frames =
-        facts.total_of_vectors(|body| body.outside.torque.unwrap_or(DVec3::NAN));
+        facts.told(|body| body.outside.contact.map(|[_, torque]| torque));
+
+    /// Mean force of what holds and drags nodes (N), in the last interval between rows, or else frames; as one number, its length.
+    HoldForce, hold_force: DVec3, "holding force", "N", Frames = facts.told(|body| body.outside.grips.map(|[force, _]| force));
+
+    /// Its torque about the origin (N m); as one number, its length.
+    HoldTorque, hold_torque: DVec3, "holding torque", "N m", Frames =
+        facts.told(|body| body.outside.grips.map(|[_, torque]| torque));
 
     /// Number of pairs of triangles, or of sides in the plane, of bodies and obstacles that cross each other where surfaces meet: 0 where all is
     /// well.
@@ -381,9 +396,10 @@ diagnostics! { facts:
 }
 
 impl Diagnostic {
-    /// Whether it tells of forces of contact, and is NaN unless a world is [asked for them](super::World::keep_contact_forces).
-    pub fn is_of_contact(self) -> bool {
-        matches!(self, Self::ContactForce | Self::ContactTorque)
+    /// Whether it tells of forces of contact or of constraints, and is NaN unless a world is [asked for
+    /// them](super::World::keep_contact_forces).
+    pub fn is_of_forces(self) -> bool {
+        matches!(self, Self::ContactForce | Self::ContactTorque | Self::HoldForce | Self::HoldTorque)
     }
 
     /// Its value as one number; NaN where a model or a body has none.

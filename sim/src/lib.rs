@@ -71,7 +71,7 @@ pub use body::{Body, BodyError, NewBody};
 pub use carried::{Carried, Weights};
 pub use contact::{
     BodyContact, Contact, ContactForce, ContactPoint, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed,
-    Shape, Side, Surfaces,
+    Shape, Side, Source, Surfaces,
 };
 pub use crew::Crew;
 pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};

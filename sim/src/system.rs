@@ -1,6 +1,6 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
-use super::contact::{End, Felt, Impulses, Obstacle, Shape, Side, Stage, Timing};
+use super::contact::{End, Felt, Impulses, Obstacle, Shape, Source, Stage, Timing};
 use super::crew::Crew;
 use super::dynamics::SpeedLimit;
 use super::grip::Grip;
@@ -51,10 +51,11 @@ impl System {
         held
     }
 
-    /// Adds what an obstacle does to a node in a step that ends at a time (s), with its positions (m) and velocities (m/s) before and after.
-    pub(super) fn feel(&self, time: f64, [obstacle, node]: [usize; 2], before: [DVec3; 2], after: [DVec3; 2]) {
+    /// Adds what an obstacle or a grip does to a node in a step that ends at a time (s), with its positions (m) and velocities (m/s) before and
+    /// after.
+    pub(super) fn feel(&self, time: f64, from: Source, node: usize, before: [DVec3; 2], after: [DVec3; 2]) {
         if let Some(impulses) = self.impulses.as_ref().filter(|_| before != after) {
-            let (from, on) = (Side::Obstacle(obstacle), self.parts.partition_point(|part| part.nodes.end <= node));
+            let on = self.parts.partition_point(|part| part.nodes.end <= node);
             let [before, after] = [before, after].map(|[at, speed]| [speed, at.cross(speed)]);
             let changes = [0, 1].map(|of| (after[of] - before[of]) * self.mass[node]);
             impulses.feel(Felt { time, node, from, on, changes });
@@ -219,7 +220,8 @@ impl System {
                 for (node, (at, speed)) in
                     nodes.clone().zip(before.into_iter().flatten()).filter(|&(node, _)| !held[node])
                 {
-                    self.feel(interval.end, [number, node], [at, speed], [position[node], velocity[node]]);
+                    let after = [position[node], velocity[node]];
+                    self.feel(interval.end, Source::Obstacle(number), node, [at, speed], after);
                 }
             }
         }
@@ -235,8 +237,11 @@ impl System {
     pub(super) fn meet(&self, end: End<'_>, constraints: &[f64]) {
         let Some(stage) = &self.contact else { return };
         let interval = end.interval;
-        let held = self.grips(constraints).flat_map(|(grip, memory)| grip.moved(interval, memory));
-        stage.resolve(end, held.map(|(node, ..)| node), &self.crew);
+        let held = self
+            .grips(constraints)
+            .enumerate()
+            .flat_map(|(number, (grip, memory))| grip.moved(interval, memory).map(move |(node, ..)| [number, node]));
+        stage.resolve(end, held, &self.crew);
     }
 
     /// Places the nodes that grips hold at the end of a step where they are after a `share` of it, with their velocity in
@@ -246,6 +251,18 @@ impl System {
         for (grip, memory) in self.grips(constraints) {
             for (node, to, speed) in grip.moved_by(interval, share, memory) {
                 (position[node], velocity[node]) = (to, speed);
+            }
+        }
+    }
+
+    /// Adds what grips do to the nodes that they hold at the end of a step, which have other velocities in `next` so far.
+    pub(super) fn feel_grips(&self, interval: Interval, next: &State) {
+        if self.impulses.is_none() {
+            return;
+        }
+        for (number, (grip, memory)) in self.grips(&next.memory.constraints).enumerate() {
+            for (node, at, speed) in grip.moved(interval, memory) {
+                self.feel(interval.end, Source::Grip(number), node, [at, next.velocity[node]], [at, speed]);
             }
         }
     }

@@ -6,8 +6,8 @@ use super::{OutputError, exact, rows_as_csv};
 use crate::runner::TableRow;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::{Frame, RunFrame};
-use crate::scene::{ALL_BODIES, Scene};
-use crate::sim::{ContactForce, Diagnostic, Diagnostics, Side, Snapshot, Status, Value};
+use crate::scene::{ALL_BODIES, Run, Scene};
+use crate::sim::{ContactForce, Diagnostic, Diagnostics, Snapshot, Source, Status, Value};
 use glam::DVec3;
 use std::fs;
 use std::io;
@@ -35,7 +35,7 @@ impl<'a> DiagnosticsWriter<'a> {
         let file = Growing::open(&hidden, None).map_err(OutputError::writing(&path))?;
         let mut writer = Self { scene, file, hidden, path };
         let heads = cells(["", ALL_BODIES], None, 0.0, Status::Ok, &Diagnostics::default());
-        let exerted = Exerted { scene, of: &[], forces: &[] }.cells(None);
+        let exerted = Exerted { scene, run: None, forces: &[] }.cells(None);
         let heads = heads.into_iter().chain(exerted).map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
@@ -71,7 +71,7 @@ impl<'a> DiagnosticsWriter<'a> {
             let run = &self.scene.runs[*run];
             let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
             let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], forces: &[ContactForce]| {
-                let exerted = Exerted { scene: self.scene, of: &run.of, forces };
+                let exerted = Exerted { scene: self.scene, run: Some(run), forces };
                 let own = (0..).zip(of_bodies).zip(&bodies).map(|((at, one), &body)| (Some(at), body, one));
                 rows.extend(std::iter::once((None, ALL_BODIES, all)).chain(own).map(|(at, body, one)| {
                     let mut row = cells([&run.name, body], frame, time, status, one);
@@ -107,28 +107,38 @@ impl<'a> DiagnosticsWriter<'a> {
     }
 }
 
-/// What obstacles and bodies exert in a row of a run.
+/// What obstacles, constraints and bodies exert in a row of a run.
 struct Exerted<'a> {
     scene: &'a Scene,
-    /// The bodies of the run, by their numbers in the scene.
-    of: &'a [usize],
+    /// `None` for headings.
+    run: Option<&'a Run>,
     /// Empty if nothing is known.
     forces: &'a [ContactForce],
 }
 
 impl Exerted<'_> {
-    /// Force and torque of each obstacle, and of each of several bodies, on a body of the run, or on all its bodies together, with the
-    /// headings of their columns. There are none where forces are not kept.
+    /// Force and torque of each obstacle, of each constraint and of each of several bodies, on a body of the run, or on all its bodies together,
+    /// with the headings of their columns. There are none where forces are not kept.
     fn cells(&self, on: Option<usize>) -> Vec<(String, String)> {
-        let Self { scene, of, forces } = *self;
-        let obstacles = scene.obstacle_names.iter().enumerate().map(|(at, name)| (Some(Side::Obstacle(at)), name));
-        let own = |body: usize| of.iter().position(|&of| of == body).map(Side::Body);
+        let Self { scene, run, forces } = *self;
+        let obstacles = scene.obstacle_names.iter().enumerate();
+        let obstacles = obstacles.map(|(at, name)| (vec![Source::Obstacle(at)], name));
+        // A constraint on several bodies is one for each of them.
+        let mut names: Vec<&String> = scene.runs.iter().flat_map(|run| &run.grip_names).collect();
+        names.sort_unstable_by_key(|name| (name.starts_with("grab"), name.len(), *name));
+        names.dedup();
+        let gripping = |name: &String| {
+            let named = run.into_iter().flat_map(|run| run.grip_names.iter().enumerate());
+            named.filter(|(_, other)| *other == name).map(|(at, _)| Source::Grip(at)).collect()
+        };
+        let grips = names.into_iter().map(|name| (gripping(name), name));
+        let own = |body: usize| run.and_then(|run| run.of.iter().position(|&of| of == body)).map(Source::Body);
         let several = scene.bodies.iter().enumerate().filter(|_| scene.bodies.len() > 1);
-        let sides = obstacles.chain(several.map(|(at, body)| (own(at), &body.name)));
-        let of_side = |(from, name): (Option<Side>, &String)| {
-            let found = forces.iter().filter(move |one| Some(one.from) == from && on.is_none_or(|on| one.on == on));
+        let bodies = several.map(|(at, body)| (own(at).into_iter().collect(), &body.name));
+        let of_source = |(from, name): (Vec<Source>, &String)| {
+            let is_known = !from.is_empty() && !forces.is_empty();
+            let found = forces.iter().filter(move |one| from.contains(&one.from) && on.is_none_or(|on| one.on == on));
             let name = name.clone();
-            let is_known = from.is_some() && !forces.is_empty();
             ["force", "torque"].into_iter().enumerate().flat_map(move |(at, key)| {
                 let each = found.clone().map(|one| [one.force, one.torque][at]);
                 let sum = if is_known { each.sum() } else { DVec3::NAN };
@@ -139,7 +149,8 @@ impl Exerted<'_> {
                     .map(move |(axis, one)| (format!("{head}_{axis}"), exact(one)))
             })
         };
-        sides.filter(|_| scene.keeps_contact()).flat_map(of_side).collect()
+        let sources = obstacles.chain(grips).chain(bodies);
+        sources.filter(|_| scene.keeps_forces()).flat_map(of_source).collect()
     }
 }
 

@@ -166,7 +166,7 @@ impl<'a> Runner<'a> {
     /// Keeps what some diagnostics tell of contact, if they do, beside what the charts of the scene tell.
     pub(crate) fn keeping_contact(mut self, wanted: &[Diagnostic]) -> Self {
         let scene = self.scene;
-        if wanted.iter().any(|one| one.is_of_contact()) {
+        if wanted.iter().any(|one| one.is_of_forces()) {
             self.runs.iter_mut().for_each(|running| scene.keep_contact(&mut running.world));
         }
         self
@@ -440,7 +440,7 @@ impl Scene {
             }
         };
         world.show(self.view.colour.map(|scale| scale.field));
-        if self.keeps_contact() {
+        if self.keeps_forces() {
             self.keep_contact(&mut world);
         }
         world

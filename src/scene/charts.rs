@@ -26,9 +26,9 @@ impl Scene {
         needed.then_some(&view.charts[..])
     }
 
-    /// Whether charts or marks tell of contact, so that its forces are kept.
-    pub(crate) fn keeps_contact(&self) -> bool {
-        self.view.visible.contacts || self.view.charts.iter().any(|chart| chart.is_of_contact())
+    /// Whether charts or marks tell of forces of contact or of constraints, so that they are kept.
+    pub(crate) fn keeps_forces(&self) -> bool {
+        self.view.visible.contacts || self.view.charts.iter().any(|chart| chart.is_of_forces())
     }
 
     /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
@@ -76,6 +76,14 @@ impl Scene {
             Diagnostic::ContactForce | Diagnostic::ContactTorque => (
                 has(&|_, _| true) && (!self.obstacles.is_empty() || self.runs.iter().any(|run| run.of.len() > 1)),
                 "nothing is there to touch, or all is recorded; add an obstacle or a body, or plot another diagnostic, such as \"kinetic\"",
+            ),
+            Diagnostic::HoldForce | Diagnostic::HoldTorque => (
+                self.runs.iter().any(|run| !run.grips.is_empty()),
+                "nothing is held, or all is recorded; add a [[hold]], or plot another diagnostic, such as \"contact_force\"",
+            ),
+            Diagnostic::Work => (
+                self.runs.iter().any(|run| !run.loads.is_empty()),
+                "there are no loads, or all is recorded; add a [[load]], or plot another diagnostic, such as \"energy\"",
             ),
             Diagnostic::Crossings => (
                 has(&|_, _| true) && self.contacts.is_some(),

@@ -24,6 +24,8 @@ pub struct Run {
     pub recording: Option<Arc<Recorded>>,
     /// Kinematic constraints: nodes that are held or dragged, counted over all its bodies.
     pub grips: Vec<Grip>,
+    /// The name of each in files, such as `hold[0]`.
+    pub grip_names: Vec<String>,
     /// Loads on nodes and faces, counted over all its bodies.
     pub loads: Vec<Arc<Loading>>,
     /// The integrator.

@@ -6,7 +6,7 @@ use super::end::End;
 use super::places::{ContactPoint, SLACK};
 use super::rule::{Law, Moved, Term, Touch};
 use super::surface::Surface;
-use super::{Obstacle, Side};
+use super::{Obstacle, Side, Source};
 use crate::part::Part;
 use glam::DVec3;
 
@@ -181,12 +181,13 @@ impl Grounds {
         }
     }
 
-    /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points.
+    /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points. `held` are the nodes that grips
+    /// hold, if impulses are asked for.
     pub(super) fn resolve(
         &mut self,
         surfaces: &[Surface],
         end: &mut End<'_>,
-        inverse_mass: &[f64],
+        (inverse_mass, held): (&[f64], &[[usize; 2]]),
         slowed: &[DVec3],
         is_changed: &mut [bool],
     ) {
@@ -208,7 +209,11 @@ impl Grounds {
                 None => drop(nodes.resolve(law, touch, terms)),
                 Some(impulses) => {
                     let told = nodes.resolve_and_tell(law, touch, terms, second);
-                    told.inspect(|&[on, _]| impulses.feel_surface(interval.end, Side::Obstacle(obstacle), body, on));
+                    let Some(([on, _], impulse)) = told else { continue };
+                    impulses.feel_surface(interval.end, Source::Obstacle(obstacle), body, on);
+                    for (grip, _, changes) in nodes.holding(held, terms, impulse) {
+                        impulses.feel_surface(interval.end, Source::Grip(grip), body, changes);
+                    }
                 }
             }
         }

@@ -1,4 +1,5 @@
-//! The impulses that obstacles and bodies exert on bodies where they touch, for worlds that are asked for them.
+//! The impulses that obstacles and bodies exert on bodies where they touch, and kinematic constraints on the nodes that they hold, for worlds
+//! that are asked for them.
 //!
 //! They are added up over intervals of time. What steps have added since the last [`Impulses::keep`] waits: these steps may be taken
 //! again. It is added in the order of time, and of nodes, so that sums have the same bits for any number of threads.
@@ -8,12 +9,33 @@ use crate::world::Moment;
 use glam::DVec3;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The mean force that an obstacle or a body exerts on a body where they touch, over an interval of time.
+/// What exerts a force on a body, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
+pub enum Source {
+    /// An obstacle.
+    Obstacle(usize),
+    /// A kinematic constraint.
+    Grip(usize),
+    /// Another body.
+    Body(usize),
+}
+
+impl From<Side> for Source {
+    fn from(side: Side) -> Self {
+        match side {
+            Side::Obstacle(number) => Self::Obstacle(number),
+            Side::Body(number) => Self::Body(number),
+        }
+    }
+}
+
+/// The mean force that an obstacle, a kinematic constraint or another body exerts on a body, over an interval of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactForce {
     /// What exerts it.
-    pub from: Side,
+    pub from: Source,
     /// The number of the body that it acts on.
     pub on: usize,
     /// The force (N).
@@ -29,7 +51,7 @@ pub(crate) struct Felt {
     pub(crate) time: f64,
     /// The node that has it; [`SURFACE`] for an impulse on several nodes.
     pub(crate) node: usize,
-    pub(crate) from: Side,
+    pub(crate) from: Source,
     pub(crate) on: usize,
     /// The change of momentum of the body (N s), and of its angular momentum about the origin (N m s).
     pub(crate) changes: [DVec3; 2],
@@ -38,10 +60,11 @@ pub(crate) struct Felt {
 /// In place of a node. Surfaces meet after nodes have met obstacles.
 const SURFACE: usize = usize::MAX;
 
-/// Impulses and angular impulses about the origin, of each obstacle and then of each body on each body.
+/// Impulses and angular impulses about the origin, of each obstacle, each kinematic constraint and then each body on each body.
 #[derive(Debug)]
 pub(crate) struct Impulses {
     obstacles: usize,
+    grips: usize,
     bodies: usize,
     /// An interval ends at each multiple of this moment.
     every: Moment,
@@ -67,20 +90,20 @@ impl Clone for Impulses {
 
 impl Impulses {
     /// None so far, from a step on.
-    pub(crate) fn new([obstacles, bodies]: [usize; 2], every: Moment, step: u64) -> Self {
-        let mut numbers = vec![0.0; HEAD + 2 * 6 * (obstacles + bodies) * bodies];
+    pub(crate) fn new([obstacles, grips, bodies]: [usize; 3], every: Moment, step: u64) -> Self {
+        let mut numbers = vec![0.0; HEAD + 2 * 6 * (obstacles + grips + bodies) * bodies];
         numbers[0] = step as f64;
-        Self { obstacles, bodies, every, sums: Mutex::new(Sums { numbers, waiting: Vec::new() }) }
+        Self { obstacles, grips, bodies, every, sums: Mutex::new(Sums { numbers, waiting: Vec::new() }) }
     }
 
-    /// None so far, among so many obstacles.
-    pub(crate) fn among(&self, obstacles: usize, step: u64) -> Self {
-        Self::new([obstacles, self.bodies], self.every, step)
+    /// None so far, among so many obstacles and kinematic constraints.
+    pub(crate) fn among(&self, [obstacles, grips]: [usize; 2], step: u64) -> Self {
+        Self::new([obstacles, grips, self.bodies], self.every, step)
     }
 
-    /// The number of obstacles.
-    pub(crate) fn obstacles(&self) -> usize {
-        self.obstacles
+    /// The numbers of obstacles and of kinematic constraints.
+    pub(crate) fn surroundings(&self) -> [usize; 2] {
+        [self.obstacles, self.grips]
     }
 
     fn lock(&self) -> MutexGuard<'_, Sums> {
@@ -93,7 +116,7 @@ impl Impulses {
     }
 
     /// The same for surfaces, which meet in order. What follows from the same side in the same step is added up.
-    pub(super) fn feel_surface(&self, time: f64, from: Side, on: usize, changes: [DVec3; 2]) {
+    pub(super) fn feel_surface(&self, time: f64, from: Source, on: usize, changes: [DVec3; 2]) {
         let waiting = &mut self.lock().waiting;
         match waiting.last_mut().filter(|last| (last.time, last.node, last.from, last.on) == (time, SURFACE, from, on))
         {
@@ -128,10 +151,11 @@ impl Impulses {
         }
     }
 
-    fn place(&self, from: Side, on: usize) -> usize {
+    fn place(&self, from: Source, on: usize) -> usize {
         let from = match from {
-            Side::Obstacle(number) => number,
-            Side::Body(number) => self.obstacles + number,
+            Source::Obstacle(number) => number,
+            Source::Grip(number) => self.obstacles + number,
+            Source::Body(number) => self.obstacles + self.grips + number,
         };
         6 * (from * self.bodies + on)
     }
@@ -185,9 +209,10 @@ impl Impulses {
     pub(crate) fn forces(&self, numbers: &[f64]) -> Option<Vec<ContactForce>> {
         let (&[_, known], rest) = numbers.split_first_chunk::<HEAD>()?;
         let means = &rest[rest.len() / 2..];
-        let sides = (0..self.obstacles).map(Side::Obstacle).chain((0..self.bodies).map(Side::Body));
-        let pairs = sides.flat_map(|from| (0..self.bodies).map(move |on| (from, on)));
-        let found = pairs.filter(|&(from, on)| from != Side::Body(on)).map(|(from, on)| {
+        let around = (0..self.obstacles).map(Source::Obstacle).chain((0..self.grips).map(Source::Grip));
+        let sources = around.chain((0..self.bodies).map(Source::Body));
+        let pairs = sources.flat_map(|from| (0..self.bodies).map(move |on| (from, on)));
+        let found = pairs.filter(|&(from, on)| from != Source::Body(on)).map(|(from, on)| {
             let [x, y, z, a, b, c] = std::array::from_fn(|at| means[self.place(from, on) + at]);
             ContactForce { from, on, force: DVec3::new(x, y, z), torque: DVec3::new(a, b, c) }
         });

@@ -31,7 +31,7 @@ mod touches;
 
 pub(crate) use bound::{Bound, Floor};
 pub(crate) use end::End;
-pub use impulses::ContactForce;
+pub use impulses::{ContactForce, Source};
 pub(crate) use impulses::{Felt, Impulses};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};

@@ -113,7 +113,7 @@ impl Moved<'_> {
         touch: &Touch,
         terms: &[Term],
         second: u32,
-    ) -> Option<[[DVec3; 2]; 2]> {
+    ) -> Option<([[DVec3; 2]; 2], DVec3)> {
         let before = self.momenta(terms, second);
         let impulse = self.resolve(law, touch, terms);
         let after = self.momenta(terms, second);
@@ -123,7 +123,22 @@ impl Moved<'_> {
             *sum += impulse * weight;
             *turn += self.place(node).cross(impulse * weight);
         }
-        (sums != [[DVec3::ZERO; 2]; 2]).then_some(sums)
+        (sums != [[DVec3::ZERO; 2]; 2]).then_some((sums, impulse))
+    }
+
+    /// What grips give the nodes that they hold against their shares of an impulse: the grip, the node, and its change of momentum and of
+    /// angular momentum about the origin. `held` has the held nodes in rising order, each with its grip.
+    pub(super) fn holding(
+        &self,
+        held: &[[usize; 2]],
+        terms: &[Term],
+        impulse: DVec3,
+    ) -> impl Iterator<Item = (usize, u32, [DVec3; 2])> {
+        terms.iter().filter_map(move |&Term { node, weight }| {
+            let at = held.binary_search_by_key(&(node as usize), |&[node, _]| node).ok()?;
+            let against = -impulse * weight;
+            Some((held[at][1], node, [against, self.place(node).cross(against)]))
+        })
     }
 
     /// Notes that a node is changed.

@@ -10,7 +10,7 @@ use super::places::Places;
 use super::rule::{Law, Moved};
 use super::shown::Shown;
 use super::surface::Surface;
-use super::{Contacts, Impulses, Obstacle, Side};
+use super::{Contacts, Impulses, Obstacle, Side, Source};
 use crate::crew::Crew;
 use crate::motion::Interval;
 use crate::part::Part;
@@ -60,6 +60,8 @@ struct Known {
     left: f64,
     shown: Vec<Shown>,
     inverse_mass: Vec<f64>,
+    /// The nodes that grips hold, in rising order, and the grip of each, if impulses are asked for.
+    held: Vec<[usize; 2]>,
     /// The velocities at the start of the step minus those at its end (m/s), of nodes of surfaces.
     slowed: Vec<DVec3>,
     /// Whether each node was changed in this step.
@@ -186,13 +188,19 @@ impl Stage {
         thickest + own
     }
 
-    /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, which stay as they are.
-    pub(crate) fn resolve(&self, mut end: End<'_>, held: impl Iterator<Item = usize>, crew: &Crew) {
+    /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, each with the number of its grip: they
+    /// stay as they are.
+    pub(crate) fn resolve(&self, mut end: End<'_>, held: impl Iterator<Item = [usize; 2]>, crew: &Crew) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let (known, interval) = (&mut *known, end.interval);
         self.place_obstacles(interval, &mut known.obstacles);
         known.inverse_mass.clone_from(&self.inverse_mass);
-        held.for_each(|node| known.inverse_mass[node] = 0.0);
+        known.held.clear();
+        for [grip, node] in held {
+            known.inverse_mass[node] = 0.0;
+            known.held.extend(end.impulses.map(|_| [node, grip]));
+        }
+        known.held.sort_unstable();
         known.is_changed.clear();
         known.is_changed.resize(end.position.len(), false);
         known.slowed.resize(end.position.len(), DVec3::ZERO);
@@ -203,7 +211,8 @@ impl Stage {
         };
         slow(&mut known.slowed, &self.nodes, &end);
         let mut grounds = self.grounds.lock().unwrap_or_else(PoisonError::into_inner);
-        grounds.resolve(&self.surfaces, &mut end, &known.inverse_mass, &known.slowed, &mut known.is_changed);
+        let masses = (&known.inverse_mass[..], &known.held[..]);
+        grounds.resolve(&self.surfaces, &mut end, masses, &known.slowed, &mut known.is_changed);
         slow(&mut known.slowed, end.changed, &end);
         let End { before, position, velocity, timing, changed, impulses, .. } = end;
         let [start, moved, speed] = &known.obstacles;
@@ -266,8 +275,14 @@ impl Stage {
                 match impulses {
                     None => drop(nodes.resolve(pair.law, touch, terms)),
                     Some(impulses) => {
-                        let told = nodes.resolve_and_tell(pair.law, touch, terms, self.first_node(pair.of[1]));
-                        told.inspect(|&told| self.tell(impulses, interval.end, pair.of, told));
+                        let second = self.first_node(pair.of[1]);
+                        let told = nodes.resolve_and_tell(pair.law, touch, terms, second);
+                        let Some((sums, impulse)) = told else { continue };
+                        self.tell(impulses, interval.end, pair.of, sums);
+                        for (grip, node, changes) in nodes.holding(&known.held, terms, impulse) {
+                            let on = pair.of[usize::from(node >= second)];
+                            impulses.feel_surface(interval.end, Source::Grip(grip), on, changes);
+                        }
                     }
                 }
             }
@@ -283,10 +298,10 @@ impl Stage {
     /// Adds what the sides of a pair have got in a step that ends at a time (s). A body exerts nothing on itself.
     fn tell(&self, impulses: &Impulses, time: f64, [one, other]: [usize; 2], [on_one, on_other]: [[DVec3; 2]; 2]) {
         if one != other {
-            impulses.feel_surface(time, self.side(other), one, on_one);
+            impulses.feel_surface(time, self.side(other).into(), one, on_one);
         }
         if let (true, Side::Body(body)) = (one != other, self.side(other)) {
-            impulses.feel_surface(time, self.side(one), body, on_other);
+            impulses.feel_surface(time, self.side(one).into(), body, on_other);
         }
     }
 

@@ -72,6 +72,7 @@ impl ByComposition {
             if at == composition.evaluations() {
                 break;
             }
+            step.system.feel_grips(step.interval, next);
             step.place_held(composition.share(at), next);
             step.evaluate(composition.share(at), next.nodes(), &next.memory.model, evaluation);
             next.memory.model.copy_from_slice(&evaluation.memory);

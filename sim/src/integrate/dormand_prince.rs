@@ -43,6 +43,8 @@ pub(super) struct DormandPrince {
     evaluation: Evaluation,
     /// Velocities, then accelerations, of each stage.
     slopes: Vec<DVec3>,
+    /// The mean acceleration of each node that is held, by its forces.
+    held: Vec<DVec3>,
     /// Positions, then velocities, before contact.
     before_contact: Vec<DVec3>,
 }
@@ -71,8 +73,8 @@ impl Method for DormandPrince {
 
 impl DormandPrince {
     pub(super) fn new(scales: Scales, tolerance: f64) -> Self {
-        let (now, evaluation, slopes, before_contact) = Default::default();
-        Self { scales, tolerance, now, evaluation, slopes, before_contact }
+        let (now, evaluation, slopes, held, before_contact) = Default::default();
+        Self { scales, tolerance, now, evaluation, slopes, held, before_contact }
     }
 
     /// Computes a substep from a time (s), and returns its end (s).
@@ -98,6 +100,12 @@ impl DormandPrince {
                 continue;
             }
             let impulses = part.system.impulses.as_ref().map(|impulses| (impulses, impulses.waiting()));
+            // As if nothing held them.
+            let constraints = &next.memory.constraints;
+            part.system.grips(constraints).for_each(|(grip, memory)| {
+                let held = grip.moved(part.interval, memory).map(|(node, ..)| node);
+                held.for_each(|node| next.velocity[node] = state.velocity[node] + self.held[node] * step);
+            });
             let has_met = part.finish_and_tell(state, next, &mut self.before_contact)?;
             if has_met
                 && searches < MOST_SEARCHES
@@ -144,6 +152,8 @@ impl DormandPrince {
         let (nodes, step) = (state.position.len(), part.interval.step);
         next.memory.model.copy_from_slice(&state.memory.model);
         self.slopes.resize(14 * nodes, DVec3::ZERO);
+        self.held.clear();
+        self.held.resize(nodes, DVec3::ZERO);
         for stage in 0..7 {
             let (before, slopes) = self.slopes.split_at_mut(2 * stage * nodes);
             let sum = |first: usize| {
@@ -165,7 +175,10 @@ impl DormandPrince {
                     next.memory.model.copy_from_slice(&self.evaluation.memory);
                 }
             }
-            part.for_each_held(next, |node| accelerations[node] = DVec3::ZERO);
+            let weight = STAGES[6].get(stage).copied().unwrap_or_default();
+            part.for_each_held(next, |node| {
+                self.held[node] += std::mem::take(&mut accelerations[node]) * weight;
+            });
         }
         let unit = self.tolerance * self.scales.length;
         let mut worst = (0.0, 0);

@@ -269,6 +269,7 @@ impl Step<'_> {
     /// # Errors
     /// The first node above the limit, or with a velocity that is NaN: the world has diverged, and keeps its last state.
     pub fn check(&self, next: &mut State) -> Result<(), Runaway> {
+        self.system.feel_grips(self.interval, next);
         self.hold(next);
         let limit = self.limit * self.limit;
         // NaN is never within the limit.
@@ -305,6 +306,7 @@ impl Step<'_> {
     /// becomes the positions, then the velocities, before contact.
     fn finish_and_tell(&self, state: &State, next: &mut State, before: &mut Vec<DVec3>) -> Result<bool, Runaway> {
         // Held nodes are placed first, so that they count only if an obstacle moves them.
+        self.system.feel_grips(self.interval, next);
         self.place_held(1.0, next);
         before.clear();
         before.extend(next.position.iter().chain(&next.velocity));

@@ -1,9 +1,9 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::stepper::{PartStepper, Rollback, Scheme};
-use super::{Around, Compiled, Conditions, Held, Meeting, PlaceNode, Push};
+use super::{Around, Compiled, Conditions, FeelGrip, Held, Meeting, PlaceNode, Push};
 use crate::body::Body;
-use crate::contact::{Bound, End, Floor, Obstacle, Placed};
+use crate::contact::{Bound, End, Floor, Obstacle, Placed, Source};
 use crate::crew::Crew;
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::grip::Grip;
@@ -108,12 +108,15 @@ impl Dynamics for ByKernel {
                 grips.iter().zip(&spans).any(|(grip, span)| grip.moves(end) && overlap(span, nodes))
             };
             let place = |nodes: &Range<usize>, step: u64, share: f64, place: &mut PlaceNode<'_>| {
-                let own = system.grips(memory).zip(&spans).filter(|(_, span)| overlap(span, nodes));
-                for ((grip, memory), _) in own {
+                let own = system.grips(memory).zip(&spans).enumerate().filter(|(_, (_, span))| overlap(span, nodes));
+                for (number, ((grip, memory), _)) in own {
                     let moved = grip.moved_by(system.interval(step), share, memory);
                     let own = moved.filter(|(node, ..)| nodes.contains(node));
-                    own.for_each(|(node, to, speed)| place(node - nodes.start, to, speed));
+                    own.for_each(|(node, to, speed)| place(number, node - nodes.start, to, speed));
                 }
+            };
+            let feel = |step: u64, [grip, node]: [usize; 2], before: [DVec3; 2], after: [DVec3; 2]| {
+                system.feel(system.interval(step).end, Source::Grip(grip), node, before, after);
             };
             let meet = |step: u64, before: Nodes<'_>, after: &mut State, changed: &mut Vec<u32>| {
                 let (interval, State { position, velocity, .. }) = (system.interval(step), after);
@@ -152,18 +155,23 @@ impl Dynamics for ByKernel {
                 bounds: &met.bounds,
                 row: &|step| met.row(step),
                 resolve: &|step, node, position, velocity, acceleration| {
-                    for (obstacle, &number) in met.placed[met.row(step)].iter().zip(&numbers) {
+                    // Grips place the nodes that they hold anyway, and then feel all that moves them.
+                    let placed = if unfeeling.get(node) == Some(&true) { 0..0 } else { met.row(step) };
+                    for (obstacle, &number) in met.placed[placed].iter().zip(&numbers) {
                         let before = [*position, *velocity];
                         obstacle.rebound(position, velocity, acceleration);
-                        if unfeeling.get(node) == Some(&false) {
-                            system.feel(system.interval(step).end, [number, node], before, [*position, *velocity]);
-                        }
+                        let (end, from) = (system.interval(step).end, Source::Obstacle(number));
+                        system.feel(end, from, node, before, [*position, *velocity]);
                     }
                 },
                 impulses,
                 floor: met.floor().filter(|_| impulses.is_none()),
                 apart,
-                grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
+                grips: system.holds(begin).then_some(Held {
+                    hold: &hold,
+                    place: &place,
+                    feel: impulses.map(|_| &feel as &FeelGrip<'_>),
+                }),
                 held: &[],
                 meeting: system.contact.as_ref().map(|stage| Meeting {
                     meet: &meet,

@@ -110,8 +110,11 @@ pub(crate) mod damped {
 /// The last argument is its constant acceleration in the step (m/s²), zero if it moved at constant velocity.
 pub(crate) type Resolve<'a> = dyn Fn(u64, usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
 
-/// Called with a node, its position (m) and its velocity (m/s).
-pub(crate) type PlaceNode<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
+/// Called with the number of a grip, a node, its position (m) and its velocity (m/s).
+pub(crate) type PlaceNode<'a> = dyn FnMut(usize, usize, DVec3, DVec3) + 'a;
+
+/// Takes the numbers of a step, a grip and a node that it places, and the position (m) and velocity (m/s) of the node before and after.
+pub(crate) type FeelGrip<'a> = dyn Fn(u64, [usize; 2], [DVec3; 2], [DVec3; 2]) + Sync + 'a;
 
 /// Places the nodes of a range that grips hold at the end of a step of this number, after a share of the step: calls its
 /// last argument for each of them, counted from the start of the range.
@@ -124,6 +127,8 @@ pub(crate) struct Held<'a> {
     pub(crate) hold: &'a (dyn Fn(&Range<usize>) -> bool + Sync),
     /// Places those that they hold.
     pub(crate) place: &'a Place<'a>,
+    /// Adds up what they do, if that is asked for.
+    pub(crate) feel: Option<&'a FeelGrip<'a>>,
 }
 
 /// Changes the positions (m) and velocities (m/s) of nodes at the end of a step of this number that began at the given ones, and adds those that

@@ -195,12 +195,16 @@ impl PartStepper {
             Some(grips) => {
                 // All steps have the same grips.
                 let mut held = vec![false; nodes.len()];
-                (grips.place)(nodes, passes.first, 1.0, &mut |node, _, _| held[node] = true);
+                (grips.place)(nodes, passes.first, 1.0, &mut |_, node, _, _| held[node] = true);
                 let around = Around { held: &held, ..*around };
                 some.into_iter().find_map(|pass| {
                     let lost = stepper.run(passes, pass..pass + 1, &around, crew);
                     let Pass { number, shares: [_, share], .. } = passes.get(pass);
-                    (grips.place)(nodes, number, share, &mut |node, position, velocity| {
+                    (grips.place)(nodes, number, share, &mut |grip, node, position, velocity| {
+                        if let Some(feel) = grips.feel {
+                            let (at, speed) = stepper.node(node);
+                            feel(number, [grip, first + node], [at, speed], [position, velocity]);
+                        }
                         stepper.set_node(node, position, velocity);
                     });
                     lost

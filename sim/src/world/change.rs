@@ -112,10 +112,6 @@ impl World {
         let work = self.pause();
         self.system.surroundings = changed;
         self.system.renew_contact();
-        let (obstacles, steps) = (self.system.surroundings.obstacles.len(), self.state.steps);
-        for impulses in self.system.impulses.iter_mut().filter(|kept| kept.obstacles() != obstacles) {
-            *impulses = impulses.among(obstacles, steps);
-        }
         self.go_on(work);
         Ok(())
     }
@@ -140,6 +136,11 @@ impl World {
     /// Forgets what follows from the surroundings before, but the work until now.
     fn go_on(&mut self, work: Vec<f64>) {
         self.system.renew_work(work, &self.state);
+        let Surroundings { obstacles, grips, .. } = &self.system.surroundings;
+        let (around, steps) = ([obstacles.len(), grips.len()], self.state.steps);
+        for impulses in self.system.impulses.iter_mut().filter(|kept| kept.surroundings() != around) {
+            *impulses = impulses.among(around, steps);
+        }
         self.settle();
         // What an implicit method has told stays true.
         if self.dynamics.unsolved(&self.state).is_none() {

@@ -1,12 +1,14 @@
 //! Forces of contact, for those who ask for them.
 
 use super::World;
-use crate::contact::{ContactForce, ContactPoint, Impulses, Side};
+use crate::contact::{ContactForce, ContactPoint, Impulses, Side, Source};
 use crate::diagnostics::Outside;
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::state::{Runaway, State};
+use crate::surroundings::Surroundings;
 use crate::system::System;
 use crate::world::Moment;
+use glam::DVec3;
 
 impl World {
     /// Keeps the mean forces of contact from now on, over intervals of time: an interval ends with the step nearest to each multiple of the
@@ -24,7 +26,8 @@ impl World {
     pub fn keep_contact_forces(&mut self, every: Moment) {
         assert!(every.count / every.rate > 0.0, "an interval above zero");
         self.pause();
-        let sizes = [self.system.surroundings.obstacles.len(), self.system.parts.len()];
+        let Surroundings { obstacles, grips, .. } = &self.system.surroundings;
+        let sizes = [obstacles.len(), grips.len(), self.system.parts.len()];
         let mut impulses = Impulses::new(sizes, every, self.state.steps);
         impulses.load(&self.state.memory.contact, self.state.steps);
         impulses.store(&mut self.state.memory.contact);
@@ -34,7 +37,14 @@ impl World {
     /// The mean forces of contact in the last interval that has ended, of each obstacle and then of each body on each other body; `None`
     /// before the first end, and if they are [not kept](Self::keep_contact_forces).
     pub fn contact_forces(&self) -> Option<Vec<ContactForce>> {
-        self.system.impulses.as_ref()?.forces(&self.state.memory.contact)
+        let mut forces = self.system.impulses.as_ref()?.forces(&self.state.memory.contact)?;
+        // Models that move nodes themselves do not say with which impulses.
+        let is_known =
+            |one: &ContactForce| !matches!(one.from, Source::Grip(_)) || self.system.parts[one.on].projection.is_none();
+        for one in forces.iter_mut().filter(|one| !is_known(one)) {
+            (one.force, one.torque) = (DVec3::NAN, DVec3::NAN);
+        }
+        Some(forces)
     }
 
     /// Where bodies touch obstacles, other bodies and themselves in the present state, by positions alone. Nodes touch an obstacle at a
@@ -71,10 +81,11 @@ impl World {
     pub(super) fn outside(&self, is_counted: bool) -> Vec<Outside> {
         let mut all = vec![Outside::default(); self.system.parts.len()];
         all.iter_mut().zip(self.work().into_iter().flatten()).for_each(|(outside, work)| outside.work = Some(work));
-        for ContactForce { on, force, torque, .. } in self.contact_forces().iter().flatten() {
-            let Outside { force: sum, torque: turning, .. } = &mut all[*on];
-            *sum = Some(sum.unwrap_or_default() + *force);
-            *turning = Some(turning.unwrap_or_default() + *torque);
+        for ContactForce { from, on, force, torque } in self.contact_forces().iter().flatten() {
+            let Outside { contact, grips, .. } = &mut all[*on];
+            let sums = if matches!(from, Source::Grip(_)) { grips } else { contact };
+            let [sum, turning] = sums.unwrap_or_default();
+            *sums = Some([sum + *force, turning + *torque]);
         }
         let counted = is_counted.then(|| self.crossings()).flatten();
         if counted.is_some() {

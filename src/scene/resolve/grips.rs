@@ -2,7 +2,7 @@
 
 use super::nodes::{Layered, select};
 use super::{KeyPath, motion};
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::{Collector, key_path, written};
 use crate::scene::SceneBody;
 use crate::scene::file::{GrabFile, HoldFile};
 use crate::sim::{Assembly, Grip, Motion};
@@ -26,12 +26,12 @@ pub(super) struct SceneGrip {
 impl SceneGrip {
     /// The constraints in a run of some of the bodies: one for each body that has nodes in it. So bodies do not depend on each
     /// other: gripped nodes turn about their own centre, and a body moves as it does alone, to the last bit.
-    pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = Grip> {
+    pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = (Grip, String)> {
         of.iter().enumerate().filter_map(|(at, &body)| {
             let first = bodies.nodes(at).start as u32;
             let nodes: Vec<u32> = self.nodes[body].iter().map(|node| first + node).collect();
             let Self { from, until, ref motion, .. } = *self;
-            (!nodes.is_empty()).then(|| Grip { nodes, from, until, motion: motion.clone() })
+            (!nodes.is_empty()).then(|| (Grip { nodes, from, until, motion: motion.clone() }, written(&self.path)))
         })
     }
 }

@@ -25,6 +25,7 @@ pub(super) struct Parts {
     initial: State,
     pub(super) models: Vec<Arc<dyn ElasticModel>>,
     pub(super) grips: Vec<Grip>,
+    grip_names: Vec<String>,
     loads: Vec<Arc<Loading>>,
     recording: Option<Arc<Recorded>>,
 }
@@ -83,9 +84,18 @@ impl Resolved<'_> {
             let (bodies, initial) = known.entry(of).or_insert_with(all).clone();
             if run.states.is_none() {
                 let models = self.models(of, models, report)?;
-                let grips = self.grips.iter().flat_map(|grip| grip.in_run(of, &bodies)).collect();
+                let (grips, grip_names) = self.grips.iter().flat_map(|grip| grip.in_run(of, &bodies)).unzip();
                 let loads = self.loads.iter().flat_map(|load| load.in_run(of, &bodies)).map(Arc::new).collect();
-                return Some(Parts { of: of.clone(), bodies, initial, models, grips, loads, recording: None });
+                return Some(Parts {
+                    of: of.clone(),
+                    bodies,
+                    initial,
+                    models,
+                    grips,
+                    grip_names,
+                    loads,
+                    recording: None,
+                });
             }
             let (recorded, shown) = read?.shown(run, bodies.whole(), report)?;
             let (of, bodies, initial) = match shown {
@@ -103,8 +113,8 @@ impl Resolved<'_> {
                     (vec![self.bodies.len() + own.len() - 1], bodies, initial)
                 }
             };
-            let (models, grips, loads) = (Vec::new(), Vec::new(), Vec::new());
-            Some(Parts { of, bodies, initial, models, grips, loads, recording: Some(recorded) })
+            let (models, grips, grip_names, loads) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            Some(Parts { of, bodies, initial, models, grips, grip_names, loads, recording: Some(recorded) })
         };
         // Mistakes of all runs are reported.
         let all: Vec<_> = (0..).zip(runs).zip(recordings).map(|((at, run), read)| parts(at, run, read)).collect();
@@ -161,7 +171,7 @@ impl Resolved<'_> {
             report.at(&key_path!["run", at, "kernel"], message, "remove it, or write \"reference\"");
             return None;
         }
-        let Parts { of, bodies, initial, models, grips, loads, recording } = parts;
+        let Parts { of, bodies, initial, models, grips, grip_names, loads, recording } = parts;
         let (name, colour) = (run.name.clone(), run.colour.map(|colour| colour.0));
         let place = 0;
         Some(Run {
@@ -172,6 +182,7 @@ impl Resolved<'_> {
             models,
             recording,
             grips,
+            grip_names,
             loads,
             integrator,
             step,

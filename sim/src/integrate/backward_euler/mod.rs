@@ -75,6 +75,7 @@ impl Method for BackwardEuler {
         if is_solved {
             self.balance(step, next);
         }
+        self.let_go(step, state, next);
         step.check(next)?;
         let known = Unsolved::remembered(&state.memory.integrator);
         let unsolved = if is_solved { known } else { Some(Unsolved::after(known, step.interval.end, self.largest())) };
@@ -174,6 +175,21 @@ impl BackwardEuler {
             let mean = momentum / mass.iter().sum::<f64>();
             next.velocity[nodes.clone()].iter_mut().for_each(|velocity| *velocity += mean);
             next.position[nodes].iter_mut().for_each(|position| *position += mean * step.interval.step);
+        }
+    }
+
+    /// Gives nodes that are held the velocities that they would have if nothing held them, by their forces and by what is left of the residual
+    /// of their body: what holds them then changes the momentum of the body by what its forces do not.
+    fn let_go(&self, step: &Step<'_>, state: &State, next: &mut State) {
+        for nodes in step.system.parts.iter().map(|part| part.nodes.clone()) {
+            let mass = |node: usize| step.system.mass[node];
+            let held = || nodes.clone().filter(|&node| self.is_held[node]);
+            let momentum: DVec3 = nodes.clone().map(|node| self.residual[node] * mass(node)).sum();
+            let left = momentum / held().map(mass).sum::<f64>();
+            for node in held() {
+                let change = self.evaluations[0].acceleration[node] * step.interval.step;
+                next.velocity[node] = state.velocity[node] + change + left;
+            }
         }
     }
 

@@ -9,7 +9,7 @@ use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::scene::Scene;
-use crate::sim::{ContactForce, Diagnostic, Side};
+use crate::sim::{ContactForce, Diagnostic, Side, Source};
 use glam::DVec3;
 
 /// Radius of a dot, in radii of a ring, and at most in lengths of an element; its least one (px).
@@ -49,8 +49,8 @@ impl Overlay for Contacts {
         let metres = metres_a_newton(draft.scene);
         let arrows = snapshot.contact_forces.iter().filter_map(|&ContactForce { from, on, force, .. }| {
             let own = snapshot.contact_points.iter().filter(|point| {
-                let is_back = point.from == Side::Body(on) && from == Side::Body(point.on);
-                (point.from, point.on) == (from, on) || is_back
+                let is_back = point.from == Side::Body(on) && from == Source::Body(point.on);
+                (Source::from(point.from), point.on) == (from, on) || is_back
             });
             let (count, sum) = own.fold((0, DVec3::ZERO), |(count, sum), point| (count + 1, sum + point.at));
             let start = (count > 0).then(|| sum / f64::from(count))?;
