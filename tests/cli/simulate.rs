@@ -9,8 +9,9 @@ use serde_json::Value;
 use std::io::Read;
 
 const HEADS: &str = "run,body,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
-                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,global_rotations,broken,\
-                     contact_force_x,contact_force_y,contact_force_z,contact_torque_x,contact_torque_y,contact_torque_z,crossings,status";
+                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,work,global_rotations,broken,\
+                     contact_force_x,contact_force_y,contact_force_z,contact_torque_x,contact_torque_y,contact_torque_z,\
+                     hold_force_x,hold_force_y,hold_force_z,hold_torque_x,hold_torque_y,hold_torque_z,crossings,status";
 
 /// The rows of a table without its headings.
 fn rows(table: &str) -> Vec<Vec<&str>> {
@@ -700,7 +701,7 @@ fn forces_of_contact_are_columns() {
     let (rows, plain) = (rows(&told), rows(&untold));
     assert_eq!(rows.len(), plain.len());
     assert!(rows.iter().zip(&plain).all(|(told, untold)| told[..first] == untold[..first]), "the same motion");
-    let unknown = ["nan", "nan", "nan", "nan", "nan", "nan", "0.0000000000000000e0", "ok"];
+    let unknown = [["nan"; 12].as_slice(), &["0.0000000000000000e0", "ok"]].concat();
     assert!(plain.iter().all(|row| row[first..] == unknown), "{:?}", plain[0]);
     let number = |row: &[&str], name: &str| row[at(name)].parse::<f64>().unwrap();
     let mut most: f64 = 0.0;
@@ -721,6 +722,32 @@ fn forces_of_contact_are_columns() {
         }
     }
     assert!(most > 5.0, "they met: {most}");
+}
+
+/// A hold carries weight and load once the body rests, and energy without work is what damping has taken.
+#[test]
+fn forces_of_holds_are_columns() {
+    let place = Place::new();
+    place.write(
+        "held.toml",
+        "gravity = [0, -9.8, 0]\ntime = { duration = 3, frames_per_second = 10, step = 0.001 }\nview.charts = ['hold_force', 'work']\n\
+         body = { lattice = { cells = [2, 1, 1], side = 0.1 }, density = 1000.0 }\n\
+         hold = [{ nodes = 'left' }]\ngrab = [{ nodes = [2], path.keys = [{ time = 0.1 }, { time = 0.3 }] }]\n\
+         load = [{ faces = 'right', force = [3, 0, 1], ramp = 0.5 }]\n\
+         run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.5 } }]\n",
+    );
+    place.run("simulate held.toml -q").good();
+    let table = place.read("output/held/diagnostics.csv");
+    let heads: Vec<_> = table.lines().next().unwrap().split(',').collect();
+    let last = rows(&table).pop().expect("rows");
+    let number = |name: &str| last[heads.iter().position(|head| *head == name).expect(name)].parse::<f64>().unwrap();
+    for (axis, expected) in [("x", -3.0), ("y", 19.6), ("z", -1.0)] {
+        let [whole, of_hold] = ["hold_force", "force of hold[0]"].map(|name| number(&format!("{name}_{axis}")));
+        assert!((whole - expected).abs() < 1e-4 && whole == of_hold, "{axis}: {whole} {of_hold}");
+        assert_eq!(number(&format!("force of grab[0]_{axis}")), 0.0, "released");
+        assert!(number(&format!("contact_force_{axis}")).is_nan());
+    }
+    assert!(number("work") > 0.0 && number("energy") < number("work") + 19.6 * 0.1);
 }
 
 /// Features that pass each other sideways in a long step cross; the first frame in which they do is told.

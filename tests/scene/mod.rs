@@ -7,6 +7,7 @@ mod digest;
 mod figures;
 mod good;
 #[cfg(feature = "render")]
+mod loads;
 mod look;
 mod manipulators;
 mod material;

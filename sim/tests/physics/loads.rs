@@ -1,11 +1,12 @@
 //! Loads: their forces, their work with every method, and the same bits however steps are divided.
 
 use super::INTEGRATORS;
-use super::support::{lattice, mass_spring, shape_based};
+use super::support::{bricks, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::{
-    Body, Course, Diagnostic, Ease, Integrator, Kernel, Load, Loading, Springs, State, Stepping, Surroundings, World,
+    Body, Course, Diagnostic, Diagnostics, Ease, Grip, Integrator, Kernel, Load, Loading, Moment, Motion, Springs,
+    State, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -199,4 +200,57 @@ fn steady_loads_are_forces() {
         pushed.advance(10);
         assert!(before > 0.0 && (pushed.diagnostics().work - before).abs() < 1e-12 * before);
     }
+}
+
+/// A bar of the shape model with E = 2 k/a is stretched by σ L/E under a traction σ, and its hold carries the force, also when pressed.
+#[test]
+fn a_bar_is_stretched_by_its_traction() {
+    const SIDE: f64 = 0.1;
+    let body = bricks([6, 2, 2], DVec3::splat(SIDE));
+    let model = shape_based(5e3, 20.0);
+    let at = |x: f64| -> Vec<u32> {
+        (0..).zip(body.rest()).filter(|(_, node)| (node.x - x).abs() < 1e-9).map(|(node, _)| node).collect()
+    };
+    let right = at(6.0 * SIDE);
+    let faces: Vec<_> =
+        surface(&body).into_iter().filter(|face| face.iter().all(|node| right.contains(node))).collect();
+    for traction in [1500.0, -1500.0] {
+        let mut shares = vec![DVec3::ZERO; body.len()];
+        faces.iter().for_each(|face| {
+            for_each_area(face, body.rest(), |node, area| shares[node as usize] += area * traction);
+        });
+        let forces = right.iter().map(|&node| shares[node as usize]).collect();
+        let load = Arc::new(Loading::dead(right.clone(), forces, Course::ALWAYS)) as Arc<dyn Load>;
+        let grip = Grip { nodes: at(0.0), from: 0.0, until: f64::INFINITY, motion: Motion::Still };
+        let around = Surroundings { loads: vec![load], grips: vec![grip], ..Surroundings::default() };
+        let start = State::at_rest(body.rest().to_vec());
+        let mut world = World::new(&body, start, &model, around, Stepping::new(Integrator::SemiImplicitEuler, 2e-3));
+        world.keep_contact_forces(Moment::at(1.0));
+        world.advance(40_000);
+        let expected = traction * 6.0 * SIDE / (2.0 * 5e3 / SIDE);
+        for &node in &right {
+            let moved = world.state().position[node as usize] - body.rest()[node as usize];
+            assert!(moved.distance(DVec3::X * expected) < 1e-9, "{moved} {expected}");
+        }
+        let held = world.diagnostics().hold_force;
+        assert!(held.distance(DVec3::X * (-traction * 4.0 * SIDE * SIDE)) < 1e-7, "{held}");
+        assert!((world.diagnostics().work - traction * 4.0 * SIDE * SIDE * expected).abs() < 1e-8);
+    }
+}
+
+/// The angular momentum of a free body is its torque times the time, to round-off.
+#[test]
+fn a_torque_turns_a_free_body() {
+    let body = lattice(3, 0.1);
+    let asked = DVec3::new(0.5, -2.0, 1.0);
+    let nodes: Vec<u32> = (0..body.len() as u32).step_by(3).collect();
+    let weights = vec![1.0 / nodes.len() as f64; nodes.len()];
+    let load = Arc::new(Loading::torque(nodes, weights, asked, Course::ALWAYS)) as Arc<dyn Load>;
+    let around = Surroundings { loads: vec![load], ..Surroundings::default() };
+    let model = shape_based(2e3, 0.0);
+    let start = State::at_rest(body.rest().to_vec());
+    let mut world = World::new(&body, start, &model, around, Stepping::new(Integrator::SemiImplicitEuler, STEP));
+    world.advance(1500);
+    let Diagnostics { momentum, angular_momentum, .. } = world.diagnostics();
+    assert!(angular_momentum.distance(asked * 1.5) < 1e-10 && momentum.length() < 1e-11, "{angular_momentum}");
 }

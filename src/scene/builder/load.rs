@@ -14,6 +14,11 @@ impl LoadBuilder {
         Self(LoadFile { force: Some(force.into()), ..on_nodes(nodes) })
     }
 
+    /// A force of constant direction on each body (N), which the faces with all corners among some nodes share by their areas at rest.
+    pub fn force_on_faces(corners: NodeSet, force: impl Into<Coordinates>) -> Self {
+        Self(LoadFile { force: Some(force.into()), ..on_faces(corners) })
+    }
+
     /// A force of constant direction on each area at rest (Pa) of the faces with all corners among some nodes.
     pub fn traction(corners: NodeSet, traction: impl Into<Coordinates>) -> Self {
         Self(LoadFile { traction: Some(traction.into()), ..on_faces(corners) })

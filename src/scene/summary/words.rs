@@ -34,7 +34,7 @@ impl Scene {
                 let nodes = own_nodes(load.nodes().unwrap_or_default(), own);
                 let Course { during, .. } = load.course();
                 let span = span(during.start, during.end, self.duration);
-                (!nodes.is_empty()).then(|| format!("{}, {span}", describe_load(load, &nodes, body, self.dimension())))
+                (!nodes.is_empty()).then(|| format!("{} {span}", describe_load(load, &nodes, body, self.dimension())))
             });
             words.collect()
         })

@@ -17,8 +17,8 @@ use std::ops::Range;
 
 /// The length of the arrow of the largest load, and of one of the largest pressure, in sizes of the largest body.
 const LENGTH: [f64; 2] = [0.4, 0.12];
-/// Of a whole torque: the radius of its arc in sizes of the largest body, and the part of a turn.
-const ARC: [f64; 2] = [0.3, 0.75];
+/// Of a whole torque: the radius of its arc in distances of the farthest node from the axis, and the part of a turn.
+const ARC: [f64; 2] = [1.25, 0.75];
 /// Pieces of an arc.
 const PIECES: usize = 32;
 
@@ -37,15 +37,18 @@ impl Overlay for Loads {
         let room = place.legend.arrow_length() / pixels;
         let scales = Scales::new(scene);
         let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
+        let size = arrows::size(pixels * view.side, place.scale.unit);
         let (value, metres, unit) = match (force, pressure) {
             (Some(force), _) => (number::round_below(force), scales.newton, "N"),
             (None, Some(pressure)) => (number::round_below(pressure), scales.pascal, scales.unit),
-            (None, None) => return None,
+            (None, None) => {
+                let names = vec![format!("torque {}", quantity(scales.torque, "N m")).into()];
+                return Some(Sample { names, kind: SampleKind::Arrow([place.legend.arrow_length(), size]) });
+            }
         };
         let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
         let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
         let names = vec![format!("load {}{also}", quantity(value, unit)).into()];
-        let size = arrows::size(pixels * view.side, place.scale.unit);
         Some(Sample { names, kind: SampleKind::Arrow([value * metres * pixels, size]) })
     }
 
@@ -76,11 +79,10 @@ impl Overlay for Loads {
                 }
                 Pull::Torque(torque, _) => {
                     let turn = ARC[1] * TAU * share / load.course().greatest();
-                    found.extend(draft.arc(
-                        draft.middle_of(load),
-                        torque.normalize_or_zero(),
-                        [ARC[0] * scales.size, turn],
-                    ));
+                    let (middle, axis) = (draft.middle_of(load), torque.normalize_or_zero());
+                    let nodes = load.nodes().unwrap_or_default().iter().map(|&node| draft.position[node as usize]);
+                    let farthest = nodes.fold(0.0, |far: f64, at| far.max((at - middle).cross(axis).length()));
+                    found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]));
                 }
             }
         }
@@ -95,19 +97,19 @@ struct Scales {
     pascal: f64,
     /// The unit of pressures.
     unit: &'static str,
-    /// The size of the largest body (m).
-    size: f64,
+    /// The largest torque (N m).
+    torque: f64,
 }
 
 impl Scales {
     fn new(scene: &Scene) -> Self {
-        let (mut force, mut pressure) = (0.0_f64, 0.0_f64);
+        let [mut force, mut pressure, mut torque] = [0.0_f64; 3];
         for load in scene.runs.iter().flat_map(|run| &run.loads) {
             let most = load.course().greatest();
             match load.pull() {
                 Pull::Dead(forces) => force = force.max(most * forces.iter().sum::<DVec3>().length()),
                 Pull::Pressure(size, _) => pressure = pressure.max(most * size.abs()),
-                Pull::Torque(..) => {}
+                Pull::Torque(turn, _) => torque = torque.max(most * turn.length()),
             }
         }
         let size = scene.bodies.iter().map(|body| body.body.extent()).fold(0.0, f64::max);
@@ -120,7 +122,7 @@ impl Scales {
             _ => scale([LENGTH[0], force]),
         };
         let unit = if scene.dimension() == Dimension::Plane { "N/m" } else { "Pa" };
-        Self { newton, pascal: scale([LENGTH[1], pressure]), unit, size }
+        Self { newton, pascal: scale([LENGTH[1], pressure]), unit, torque }
     }
 }
 
