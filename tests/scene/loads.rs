@@ -31,20 +31,20 @@ fn a_load_has_one_kind() {
     case(
         WORLD,
         "nodes = 'left'",
-        "4:9 `load[0]` has no load; expected one of `force`, `traction`, `pressure`, `acceleration` or `torque`",
+        "1:9 `load[0]` has no load; expected one of `force`, `traction`, `pressure`, `acceleration` or `torque`",
     );
     case(
         WORLD,
         "force = [0, 0, 1], pressure = 2",
-        "4:9 `load[0]` has `force` and `pressure`; expected one load write another",
+        "1:9 `load[0]` has `force` and `pressure`; expected one load write another",
     );
-    case(WORLD, "form = 1, force = [0, 0, 1]", "4:11 unknown key `form` in `load[0]`");
-    case(WORLD, "force = [0, 1]", "4:19 `load[0].force` has 2 coordinates; expected 3");
-    case(WORLD, "torque = 1", "4:20 `load[0].torque` is a number, but the body is in space such as torque = [0, 0, 5]");
+    case(WORLD, "form = 1, force = [0, 0, 1]", "1:11 unknown key `form` in `load[0]`");
+    case(WORLD, "force = [0, 1]", "1:19 `load[0].force` has 2 coordinates; expected 3");
+    case(WORLD, "torque = 1", "1:20 `load[0].torque` is a number, but the body is in space such as torque = [0, 0, 5]");
     case(
         PLANE,
         "torque = [0, 0, 1]",
-        "4:20 `load[0].torque` is a vector, but the body is in the plane such as torque = 5",
+        "1:20 `load[0].torque` is a vector, but the body is in the plane such as torque = 5",
     );
 }
 
@@ -53,28 +53,28 @@ fn loads_act_somewhere() {
     case(
         WORLD,
         "pressure = 5, nodes = 'top'",
-        "4:25 `load[0]` has a `pressure`, which acts on faces, with `nodes` write `faces`",
+        "1:25 `load[0]` has a `pressure`, which acts on faces, with `nodes` write `faces`",
     );
-    case(WORLD, "force = [0, 0, 1], nodes = 'top', faces = 'top'", "4:45 has both `nodes` and `faces`");
-    case(WORLD, "force = [0, 0, 1], nodes = 'tpo'", "4:38 `load[0].nodes` is \"tpo\"; expected");
+    case(WORLD, "force = [0, 0, 1], nodes = 'top', faces = 'top'", "1:45 has both `nodes` and `faces`");
+    case(WORLD, "force = [0, 0, 1], nodes = 'tpo'", "1:38 `load[0].nodes` is \"tpo\"; expected");
     case(
         WORLD,
         "force = [0, 0, 1], faces = [0, 1]",
-        "4:38 `load[0].faces` takes 2 nodes of the body, but no face has all corners among them",
+        "1:38 `load[0].faces` takes 2 nodes of the body, but no face has all corners among them",
     );
-    case(WORLD, "force = [0, 0, 1], body = 'x'", "4:37 there is no body \"x\"");
+    case(WORLD, "force = [0, 0, 1], body = 'x'", "1:37 there is no body \"x\"");
     case(
         WORLD,
         "torque = [0, 0, 1], nodes = [0]",
-        "4:20 `load[0].torque` has no arm: all its nodes of the body lie on its axis",
+        "1:20 `load[0].torque` has no arm: all its nodes of the body lie on its axis",
     );
-    case(WORLD, "torque = [1, 0, 0], nodes = [0, 1, 2]", "4:20 has no arm");
+    case(WORLD, "torque = [1, 0, 0], nodes = [0, 1, 2]", "1:20 has no arm");
     let bars = "time = { duration = 1 }\nrun = [{ name = 'one', model = { kind = 'mass-spring', stiffness = 1e4 } }]\n\
-                body = { bars = { from = [0, 0, 0], to = [1, 0, 0], count = 3 }, mass = 1 }\n";
+                body = { bars = { count = 3, length = 0.1, direction = [1, 0, 0] }, mass = 1 }\n";
     case(
         bars,
         "pressure = 5",
-        "4:9 `load[0]` acts on faces, but the body has none: it is made of bars write a `force` on `nodes`",
+        "1:9 `load[0]` acts on faces, but the body has none: it is made of bars write a `force` on `nodes`",
     );
 }
 
@@ -83,19 +83,19 @@ fn loads_act_some_time() {
     case(
         WORLD,
         "force = [0, 0, 1], from = 1, until = 1",
-        "4:47 `load[0]` ends at 1 s, not later than it begins at 1 s",
+        "1:48 `load[0]` ends at 1 s, not later than it begins at 1 s",
     );
-    case(WORLD, "force = [0, 0, 1], from = 0.5, until = 0.50001", "lasts 1.000e-5 s, but a time step takes");
-    case(WORLD, "force = [0, 0, 1], ramp = 0", "4:37 is 0; expected a number greater than 0");
+    case(WORLD, "force = [0, 0, 1], from = 0.5, until = 0.50001", "1:50 lasts 1.000e-5 s, but a time step takes");
+    case(WORLD, "force = [0, 0, 1], ramp = 0", "1:37 is 0; expected a number greater than 0");
     case(
         WORLD,
         "force = [0, 0, 1], ramp = 1, keys = [{ time = 0, share = 1 }]",
-        "4:30 `load[0]` has `ramp` and `keys`, which both say how it rises remove one",
+        "1:30 `load[0]` has `ramp` and `keys`, which both say how it rises remove one",
     );
     case(
         WORLD,
         "force = [0, 0, 1], keys = [{ time = 1, share = 1 }, { time = 1, share = 2 }]",
-        "`load[0].keys[1]` is at 1 s, not later than the key before it at 1 s list the keys in rising order of time",
+        "1:72 `load[0].keys[1]` is at 1 s, not later than the key before it at 1 s list the keys in rising order of time",
     );
 }
 
