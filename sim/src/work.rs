@@ -68,8 +68,12 @@ impl Work {
     fn account(&self, around: &Surroundings, time: f64, position: &[DVec3]) -> Account {
         let mut forces = vec![DVec3::ZERO; position.len()];
         around.push(time, position, &mut forces);
+        self.of_nodes(time, position, &forces)
+    }
+
+    fn of_nodes(&self, time: f64, position: &[DVec3], forces: &[DVec3]) -> Account {
         let some = |all: &[DVec3]| self.nodes.iter().map(|&node| all[node as usize]).collect();
-        Account { sums: Vec::new(), position: some(position), force: some(&forces), time }
+        Account { sums: Vec::new(), position: some(position), force: some(forces), time }
     }
 
     /// The sums with the work since the account, until nodes are at other positions (m) with other forces (N).
@@ -78,9 +82,9 @@ impl Work {
         from.sums.iter().zip(&self.parts).map(|(sum, part)| sum + part.clone().map(done).sum::<f64>()).collect()
     }
 
-    /// Adds up the work until a time (s) at which nodes are at other positions (m).
-    pub(crate) fn add(&self, around: &Surroundings, time: f64, position: &[DVec3]) {
-        let to = self.account(around, time, position);
+    /// Adds up the work until a time (s) at which nodes are at other positions (m) with other forces (N).
+    pub(crate) fn add(&self, time: f64, position: &[DVec3], forces: &[DVec3]) {
+        let to = self.of_nodes(time, position, forces);
         let [account, _] = &mut *self.lock();
         *account = Account { sums: self.until(account, &to), ..to };
     }

@@ -384,7 +384,9 @@ impl Dynamics for ByForces {
             let step = Step { system, interval, limit: limit.at(interval.end) };
             step.begin(state, &mut self.next);
             if let Some(work) = system.work.as_ref().filter(|_| system.adds_work(state.steps)) {
-                work.add(&system.surroundings, interval.begin, &state.position);
+                let mut forces = vec![DVec3::ZERO; state.position.len()];
+                system.surroundings.push(interval.begin, &state.position, &mut forces);
+                work.add(interval.begin, &state.position, &forces);
             }
             let done = self.method.step(&step, state, &mut self.next);
             if let Some(impulses) = &system.impulses {

@@ -1,7 +1,7 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::stepper::{PartStepper, Rollback, Scheme};
-use super::{Around, Compiled, Conditions, FeelGrip, Held, Meeting, PlaceNode, Push};
+use super::{Around, Compiled, Conditions, FeelGrip, Forces, Held, Meeting, PlaceNode, Push};
 use crate::body::Body;
 use crate::contact::{Bound, End, Floor, Obstacle, Placed, Source};
 use crate::crew::Crew;
@@ -66,7 +66,14 @@ impl Dynamics for ByKernel {
             state.memory.constraints.clone()
         });
         let Surroundings { gravity, grips, forces, loads, .. } = &system.surroundings;
-        let (work, mut steady) = (system.work.as_ref(), forces.clone());
+        let work = system.work.as_ref();
+        let loaded = || work.map_or(&[][..], |work| work.nodes()).iter().map(|&node| node as usize);
+        let mut steady = Forces::default();
+        if !forces.is_empty() {
+            steady = Forces::zero(forces.len());
+            steady.vectors.copy_from_slice(forces);
+            steady.spread(0..forces.len());
+        }
         let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
         let (obstacles, apart, impulses) = (&obstacles[..], &system.apart()[..], system.impulses.as_ref());
         let spans: Vec<_> = grips.iter().map(Grip::span).collect();
@@ -127,29 +134,30 @@ impl Dynamics for ByKernel {
                 let stage = system.contact.as_ref().filter(|_| grips.is_empty())?;
                 stage.alone(at, system.interval(step), most)
             };
-            let push = |step: u64, share: f64, position: &[DVec3], forces: &mut [DVec3]| {
+            let push = |step: u64, share: f64, position: &[DVec3], forces: &mut Forces| {
+                loaded().for_each(|node| forces.vectors[node] = DVec3::ZERO);
+                system.surroundings.push(system.interval(step).after(share), position, &mut forces.vectors);
+                forces.spread(loaded());
                 if let Some(work) = work.filter(|_| share == 0.0) {
-                    work.add(&system.surroundings, system.interval(step).begin, position);
+                    work.add(system.interval(step).begin, position, &forces.vectors);
                 }
-                forces.fill(DVec3::ZERO);
-                system.surroundings.push(system.interval(step).after(share), position, forces);
             };
             let changes = !are_steady(begin);
             if !changes && !loads.is_empty() {
                 let begin_time = system.interval(begin).begin;
+                // Forces that are the same everywhere do not read positions.
+                steady = Forces::zero(state.position.len());
+                system.surroundings.push(begin_time, &state.position, &mut steady.vectors);
+                steady.spread(loaded());
                 if let Some(work) = work.filter(|_| system.adds_work(begin)) {
                     let mut now = state.position.clone();
-                    work.nodes().iter().for_each(|&node| now[node as usize] = rollback.node(node as usize).0);
-                    work.add(&system.surroundings, begin_time, &now);
+                    loaded().for_each(|node| now[node] = rollback.node(node).0);
+                    work.add(begin_time, &now, &steady.vectors);
                 }
-                // Forces that are the same everywhere do not read positions.
-                steady.clear();
-                steady.resize(state.position.len(), DVec3::ZERO);
-                system.surroundings.push(begin_time, &state.position, &mut steady);
             }
             let around = Around {
                 gravity: *gravity,
-                forces: &steady,
+                forces: steady.columns(),
                 push: changes.then_some(&push as &Push<'_>),
                 work,
                 bounds: &met.bounds,

@@ -148,15 +148,42 @@ pub(crate) struct Meeting<'a> {
 }
 
 /// Writes the forces from outside on all nodes (N) after a share of the step of this number, at positions (m).
-pub(crate) type Push<'a> = dyn Fn(u64, f64, &[DVec3], &mut [DVec3]) + Sync + 'a;
+pub(crate) type Push<'a> = dyn Fn(u64, f64, &[DVec3], &mut Forces) + Sync + 'a;
+
+/// Forces from outside on all nodes (N).
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Forces {
+    pub(crate) vectors: Vec<DVec3>,
+    /// Their x, y and z.
+    columns: [Vec<f64>; 3],
+}
+
+impl Forces {
+    /// No forces on so many nodes.
+    pub(crate) fn zero(nodes: usize) -> Self {
+        Self { vectors: vec![DVec3::ZERO; nodes], columns: [(); 3].map(|()| vec![0.0; nodes]) }
+    }
+
+    /// Writes the vectors of some nodes into the columns.
+    pub(crate) fn spread(&mut self, nodes: impl Iterator<Item = usize>) {
+        for node in nodes {
+            let vector = self.vectors[node].to_array();
+            self.columns.iter_mut().zip(vector).for_each(|(column, one)| column[node] = one);
+        }
+    }
+
+    pub(crate) fn columns(&self) -> [&[f64]; 3] {
+        self.columns.each_ref().map(|column| &column[..])
+    }
+}
 
 /// What acts on the nodes besides elements. Its functions take the number of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Around<'a> {
     /// Acceleration of gravity (m/s²).
     pub(crate) gravity: DVec3,
-    /// The force from outside on each node (N); empty for none.
-    pub(crate) forces: &'a [DVec3],
+    /// x, y and z of the force from outside on each node (N); empty for none.
+    pub(crate) forces: [&'a [f64]; 3],
     /// What makes these forces anew for each pass, if they change. Only positions of the nodes with loads are read.
     pub(crate) push: Option<&'a Push<'a>>,
     /// The nodes with loads, and their work.

@@ -2,7 +2,7 @@
 //! run diverges.
 
 use super::update::Stage;
-use super::{Around, Lost, Meeting};
+use super::{Around, Forces, Lost, Meeting};
 use crate::contact::Timing;
 use crate::crew::Crew;
 use crate::integrate::Integrator;
@@ -183,7 +183,8 @@ impl PartStepper {
     /// Executes some of the passes; see [`Stepper::run`]. Grips place nodes after each of them.
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let Self { stepper, nodes, .. } = self;
-        let (first, forces) = (nodes.start, around.forces.get(nodes.clone()).unwrap_or_default());
+        let first = nodes.start;
+        let forces = around.forces.map(|of| of.get(nodes.clone()).unwrap_or_default());
         let resolve = |step: u64, node: usize, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3| {
             (around.resolve)(step, first + node, position, velocity, acceleration);
         };
@@ -365,7 +366,8 @@ impl Rollback {
         let mut buffers = std::mem::take(&mut self.buffers);
         let [before, after] = &mut buffers;
         let mut changed = std::mem::take(&mut self.changed);
-        let (mut begun, mut is_read, mut forces) = (None, false, around.forces.to_vec());
+        let (mut begun, mut is_read) = (None, false);
+        let mut forces = Forces::zero(if around.push.is_some() { count } else { 0 });
         let mut lost = None;
         for pass in 0..outline.len() {
             let Pass { number, stage, shares, .. } = outline.get(pass);
@@ -375,10 +377,9 @@ impl Rollback {
             }
             if let Some(push) = around.push {
                 self.read(around.work.map_or(&[], |work| work.nodes()), after);
-                forces.resize(count, DVec3::ZERO);
                 push(number, shares[0], &after.position, &mut forces);
             }
-            let around = &Around { forces: &forces, ..*around };
+            let around = if around.push.is_some() { &Around { forces: forces.columns(), ..*around } } else { around };
             lost = self.each(crew, |part, crew| {
                 let passes = part.passes(scheme, &steps, around);
                 part.run(passes, pass..pass + 1, around, crew)

@@ -109,10 +109,10 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
     /// The forces of elements on nodes (N) with those from outside. `node` tells the node in each lane.
     #[inline(always)]
     pub(crate) fn pushed(&self, force: [L; 3], node: impl Fn(usize) -> usize) -> [L; 3] {
-        if self.around.forces.is_empty() {
+        if self.around.forces[0].is_empty() {
             return force;
         }
-        let columns = columns(self.around.forces, each!(8, lane => node(lane.min(L::WIDTH - 1))));
+        let columns = columns(self.around.forces, each!(8, lane => node(lane.min(L::WIDTH - 1))), L::WIDTH);
         each!(3, axis => force[axis] + L::from_array(columns[axis]))
     }
 
@@ -323,9 +323,14 @@ fn rebound<L: Lanes>(floor: &Floor, nodes: &mut NodeVector<L>, inside: L::Mask) 
 /// all laws, each of which would be longer with it, and takes as long to compile.
 #[cold]
 #[inline(never)]
-fn columns(forces: &[DVec3], nodes: [usize; MOST]) -> [[f64; MOST]; 3] {
-    let rows = nodes.map(|node| forces.get(node).copied().unwrap_or(DVec3::ZERO));
-    each!(3, axis => each!(8, lane => rows[lane][axis]))
+fn columns(forces: [&[f64]; 3], nodes: [usize; MOST], width: usize) -> [[f64; MOST]; 3] {
+    let first = nodes[0];
+    if nodes[width - 1] == first + width - 1
+        && let [Some(x), Some(y), Some(z)] = forces.map(|of| of.get(first..)?.first_chunk::<MOST>())
+    {
+        return [*x, *y, *z];
+    }
+    forces.map(|of| nodes.map(|node| of.get(node).copied().unwrap_or(0.0)))
 }
 
 /// The lanes inside a bound.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::{
     Body, Course, Diagnostic, Diagnostics, Ease, Grip, Integrator, Kernel, Load, Loading, Moment, Motion, Springs,
-    State, Stepping, Surroundings, World,
+    State, Stepping, Surroundings, World, for_each_area,
 };
 use std::sync::Arc;
 

@@ -160,7 +160,7 @@ pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
 /// Gravity alone, and no speed limit.
 pub(super) const FREE: Around<'_> = Around {
     gravity: GRAVITY,
-    forces: &[],
+    forces: [&[]; 3],
     push: None,
     bounds: &[],
     row: &|_| 0..0,
