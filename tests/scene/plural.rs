@@ -205,6 +205,13 @@ fn bodies_that_a_run_cannot_have() {
     let one = "body.lattice = { cells = [1, 1, 1], side = 1 }\ntime.duration = 1\n[[run]]\nname = 'a'\n\
                model = { kind = 'shape-based', stiffness = 1 }\nbodies = ['cube']\n";
     case(one, "[[run]]", "[[run]]", "6:11 there is no body \"cube\" the body of the scene has no `name`; give it one");
+    let none = one.replace("bodies = ['cube']\n", "");
+    case(
+        &none,
+        "body.lattice = { cells = [1, 1, 1], side = 1 }",
+        "body = []",
+        "1:8 `body` is empty; expected 1 to 1000",
+    );
     let named = one.replace("body.lattice", "body.name = 'brick'\nbody.lattice");
     case(&named, "[[run]]", "[[run]]", "7:11 there is no body \"cube\" the body of the scene is \"brick\"");
 }

@@ -157,7 +157,8 @@ impl<'a> Typed<'a> {
         contact::check_obstacle_names(self, report);
         let obstacles = obstacles::resolve(file, dimension, &sound, report);
         let bodies: Option<Vec<_>> = bodies.into_iter().collect();
-        let mut bodies = bodies.filter(|bodies| bodies.iter().all(|body| Some(body.body.dimension()) == dimension));
+        let is_alike = |body: &SceneBody| Some(body.body.dimension()) == dimension;
+        let mut bodies = bodies.filter(|bodies| !bodies.is_empty() && bodies.iter().all(is_alike));
         let contacts = bodies.as_ref().and_then(|bodies| contact::resolve(self, bodies, report));
         if let (Some(bodies), Some(obstacles), Some(contacts)) = (&mut bodies, &obstacles, &contacts) {
             contact::separate(self, bodies, obstacles, contacts, &choices);
