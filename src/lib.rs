@@ -68,6 +68,8 @@ pub use glam;
 pub use localshape_mesh as mesh;
 /// The simulation.
 pub use localshape_sim as sim;
+/// Keys of scene files in memory, of the version that this crate uses.
+pub use toml;
 
 #[cfg(test)]
 extern crate self as localshape;

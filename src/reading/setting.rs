@@ -8,9 +8,9 @@ use std::str::FromStr;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-/// A key, written as messages write it, and a value.
+/// A key, written as messages write it, and a value in its place: `run[0].model.stiffness=1e4`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Setting {
+pub struct Setting {
     /// The text as typed.
     text: String,
     /// The parts of the key, and their places in the text.
@@ -63,6 +63,17 @@ impl FromStr for Setting {
 }
 
 impl Setting {
+    /// The key as typed.
+    pub fn key(&self) -> &str {
+        self.parts.last().map_or("", |(_, last)| &self.text[..last.end])
+    }
+
+    /// The names in the key, without entries of arrays.
+    pub(crate) fn keys(&self) -> Vec<&str> {
+        let names = self.parts.iter().map(|(part, _)| if let Segment::Key(name) = part { Some(&**name) } else { None });
+        names.flatten().collect()
+    }
+
     /// The text as typed.
     pub(crate) fn text(&self) -> &str {
         &self.text

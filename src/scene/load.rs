@@ -2,6 +2,7 @@
 
 use super::error::SceneError;
 use super::file::SceneFile;
+use super::keys::BodyLists;
 use super::limits::Limits;
 use super::mesh::is_mesh;
 use super::resolve::Typed;
@@ -29,18 +30,18 @@ impl Scene {
         Self::load_with(path, &[], limits)
     }
 
-    /// Reads a scene from a file, with other values of some keys.
+    /// Reads a scene from a file, with other values of some keys, as `--set` of the program does.
     ///
     /// # Errors
     /// As [`Self::load`]. A mistake in a setting is reported like one in the file.
-    pub(crate) fn load_with(path: &Path, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
+    pub fn load_with(path: &Path, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
         if is_mesh(path) && path.is_file() {
             return Err(SceneError::Mesh { path: path.to_owned() });
         }
         let text = text_of(path, limits, FIGURE)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.display().to_string();
-        let scene = Self::read(Document { text: &text, name: &name, settings }, folder, limits)?;
+        let scene = Self::read(Document { text: &text, name: &name, settings, lists: None }, folder, limits)?;
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
@@ -68,14 +69,15 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
-        Self::read(Document { text, name, settings: &[] }, Path::new(""), limits)
+        Self::read(Document { text, name, settings: &[], lists: None }, Path::new(""), limits)
     }
 
     /// Reads a scene from a text. Files of bodies and fonts are searched in `folder`.
     pub(super) fn read(document: Document<'_>, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let name = stem(Path::new(document.name)).unwrap_or_else(|| "scene".into());
         checked(document, &SCHEMA, FIGURE, |checked, report| {
-            let file = SceneFile::of(&checked, report);
+            let mut file = SceneFile::of(&checked, report);
+            file.fill(document.lists.unwrap_or_default());
             let typed = Typed {
                 file: &file,
                 flawed: &checked.flawed,
@@ -97,6 +99,8 @@ pub(super) struct Document<'a> {
     pub(super) name: &'a str,
     /// Values that the command line sets in place of the file's.
     pub(super) settings: &'a [Setting],
+    /// The lists of its bodies, if it is not a file but keys in memory.
+    pub(super) lists: Option<&'a [BodyLists]>,
 }
 
 /// A file of another kind, recognised by any of these keys.
@@ -134,10 +138,10 @@ pub(super) fn checked<T>(
     other: Other,
     resolve: impl FnOnce(Checked, &mut Collector<'_>) -> Result<Option<T>, SceneError>,
 ) -> Result<T, SceneError> {
-    let Document { text, name, settings } = document;
+    let Document { text, name, settings, lists } = document;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = || name.to_owned();
-    if text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
+    if lists.is_none() && text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
         return Err(SceneError::Empty { file: file() });
     }
     let (root, errors) = DeTable::parse_recoverable(text);
@@ -149,7 +153,10 @@ pub(super) fn checked<T>(
     settings.iter().for_each(|setting| whole.to_mut().extend(["\n", OPTION, setting.text()]));
     let source = Source::with_settings(&whole, text.len());
     let (root, wrong) = set(root, settings, &whole, text.len());
-    let mut report = Collector::new(&source, root.get_ref());
+    let mut report = match lists {
+        Some(_) => Collector::of_code(root.get_ref()),
+        None => Collector::new(&source, root.get_ref()),
+    };
     if let Some(key) = other.keys.iter().find(|key| root.get_ref().contains_key(**key)) {
         report.at_key(&key_path![*key], other.message, None);
         return Err(SceneError::Mistakes(report.finish(name)));

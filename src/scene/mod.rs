@@ -17,6 +17,7 @@ mod error;
 pub(crate) mod figure;
 mod file;
 pub(crate) mod generate;
+mod keys;
 mod limits;
 mod load;
 pub(crate) mod mesh;
@@ -38,12 +39,14 @@ mod turning;
 mod typed;
 
 pub use crate::reading::captions::description;
+pub use crate::reading::setting::Setting;
 pub use crate::reading::{Mistake, Mistakes};
 pub use builder::{
     BodyBuilder, ContactBuilder, LoadBuilder, NodeSet, ObstacleBuilder, PairBuilder, RunBuilder, SceneBuilder,
 };
 pub use error::SceneError;
 pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing, Up};
+pub use keys::{BodyLists, SceneKeys};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
@@ -60,7 +63,6 @@ use crate::reading::words::{list, nearest, quoted};
 use crate::sim::{Body, Contacts, Dimension, Moment, Obstacle, State};
 use glam::DVec3;
 use localshape_mesh::Group;
-#[cfg(feature = "render")]
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -158,8 +160,7 @@ impl Scene {
     }
 
     /// Fails if a row of a recording could not be read since the scene was loaded. The states shown are then wrong.
-    #[cfg(feature = "render")]
-    pub(crate) fn check_recordings(&self) -> io::Result<()> {
+    pub fn check_recordings(&self) -> io::Result<()> {
         self.runs.iter().filter_map(|run| run.recording.as_ref()).try_for_each(|recording| match recording.fault() {
             Some(what) => {
                 Err(io::Error::new(io::ErrorKind::InvalidData, format!("{}: {what}", recording.path.display())))

@@ -129,7 +129,7 @@ impl Figure {
         let text = built_in::text(&path).expect("listed");
         let scene = |path: &Path| {
             let text = built_in::text(path).expect("figures name scenes that come with the program");
-            let document = Document { text, name: &path.display().to_string(), settings };
+            let document = Document { text, name: &path.display().to_string(), settings, lists: None };
             Scene::read(document, Path::new(""), &Limits::default())
         };
         Some(Self::read(text, &path.display().to_string(), Path::new("figures"), &scene))
@@ -179,7 +179,7 @@ impl Figure {
         scene: &dyn Fn(&Path) -> Result<Scene, SceneError>,
     ) -> Result<Self, SceneError> {
         let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
-        load::checked(Document { text, name, settings: &[] }, &SCHEMA, load::SCENE, |checked, report| {
+        load::checked(Document { text, name, settings: &[], lists: None }, &SCHEMA, load::SCENE, |checked, report| {
             let mut figure = resolve::resolve(checked, &stem, folder, scene, report)?;
             if let Some(print) = figure.as_mut().and_then(|figure| figure.print.as_mut()) {
                 print.file = name.to_owned();

@@ -1,0 +1,146 @@
+//! Scenes from the keys of scene files in memory, as of a program in another language.
+
+use super::error::SceneError;
+use super::file::{BodyFile, Coordinates, Positive, SceneFile};
+use super::limits::Limits;
+use super::load::Document;
+use super::{Mistake, Mistakes, Scene};
+use crate::reading::setting::Setting;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// The lists of one body in memory, which mean the same as the keys of scene files. They are not written as text, which takes long for
+/// millions of entries.
+#[derive(Clone, Debug, Default)]
+pub struct BodyLists {
+    /// Rest position of each node (m).
+    pub nodes: Option<Vec<Coordinates>>,
+    /// The nodes of each element.
+    pub elements: Option<Vec<Vec<u32>>>,
+    /// Pairs of nodes.
+    pub springs: Option<Vec<[u32; 2]>>,
+    /// The nodes of each face to draw.
+    pub faces: Option<Vec<Vec<u32>>>,
+    /// Initial position of each node (m).
+    pub positions: Option<Vec<Coordinates>>,
+    /// Initial velocity of each node (m/s).
+    pub velocities: Option<Vec<Coordinates>>,
+    /// Mass of each node (kg).
+    pub masses: Option<Vec<f64>>,
+}
+
+/// The keys of a scene file in memory, and the lists of its bodies.
+#[derive(Clone, Debug)]
+pub struct SceneKeys {
+    /// The name of the scene, in messages and by default as its title.
+    name: String,
+    /// The keys as a scene file, with the first entry of each list in memory.
+    pub(super) text: String,
+    /// The lists of each body.
+    pub(super) lists: Vec<BodyLists>,
+}
+
+impl SceneKeys {
+    /// The keys of a scene with a name, and the lists of its first bodies, which the keys do not have. Bodies without lists at the end may be left
+    /// out.
+    pub fn new(name: impl Into<String>, mut keys: Table, lists: Vec<BodyLists>) -> Self {
+        for (at, lists) in lists.iter().enumerate() {
+            let body = match keys.get_mut("body") {
+                Some(Value::Array(several)) => several.get_mut(at),
+                one => one.filter(|_| at == 0),
+            };
+            let table = body.and_then(Value::as_table_mut);
+            table.into_iter().for_each(|table| table.extend(lists.begun().map(|(key, list)| (key.to_owned(), list))));
+        }
+        let text = toml::to_string(&keys).expect("numbers, texts, and lists and tables of them");
+        Self { name: name.into(), text, lists }
+    }
+
+    /// The first setting of a list in memory, or of a table that contains one, whose text would be ignored.
+    fn of_lists<'s>(&self, settings: &'s [Setting]) -> Option<&'s Setting> {
+        let is_list = |key: &str| self.lists.iter().any(|lists| lists.begun().any(|(list, _)| list == key));
+        settings.iter().find(|setting| match setting.keys()[..] {
+            ["body"] => self.lists.iter().any(|lists| lists.begun().next().is_some()),
+            ["body", key, ..] => is_list(key),
+            _ => false,
+        })
+    }
+}
+
+impl BodyLists {
+    /// The keys of the lists that are given, and the first entry of each: the check of a scene file looks at these, and that of lists at all.
+    fn begun(&self) -> impl Iterator<Item = (&'static str, Value)> {
+        fn begun<T>(list: &Option<Vec<T>>, entry: impl Fn(&T) -> Value) -> Option<Value> {
+            list.as_ref().map(|list| Value::Array(list.first().map(entry).into_iter().collect()))
+        }
+        let point = |Coordinates(at): &Coordinates| Value::from(at.clone());
+        let row = |nodes: &Vec<u32>| Value::from(nodes.clone());
+        let lists = [
+            ("nodes", begun(&self.nodes, point)),
+            ("elements", begun(&self.elements, row)),
+            ("springs", begun(&self.springs, |pair| Value::from(pair.to_vec()))),
+            ("faces", begun(&self.faces, row)),
+            ("positions", begun(&self.positions, point)),
+            ("velocities", begun(&self.velocities, point)),
+            ("masses", begun(&self.masses, |&mass| Value::from(mass))),
+        ];
+        lists.into_iter().filter_map(|(key, list)| Some((key, list?)))
+    }
+
+    /// Puts the lists in place of their first entries.
+    fn fill(&self, body: &mut BodyFile) {
+        let Self { nodes, elements, springs, faces, positions, velocities, masses } = self.clone();
+        let masses: Option<Vec<_>> = masses.map(|masses| masses.into_iter().map(Positive).collect());
+        body.nodes = nodes.or(body.nodes.take());
+        body.elements = elements.or(body.elements.take());
+        body.springs = springs.or(body.springs.take());
+        body.faces = faces.or(body.faces.take());
+        body.positions = positions.or(body.positions.take());
+        body.velocities = velocities.or(body.velocities.take());
+        body.masses = masses.or(body.masses.take());
+    }
+}
+
+impl SceneFile {
+    /// Gives its bodies their lists in memory.
+    pub(super) fn fill(&mut self, lists: &[BodyLists]) {
+        let bodies = self.body.iter_mut().zip(lists);
+        bodies.for_each(|(body, lists)| body.iter_mut().for_each(|body| lists.fill(body)));
+    }
+}
+
+impl Scene {
+    /// A scene from the keys of a scene file in memory, with other values of some keys. Files that it names are searched in the current
+    /// directory. Mistakes have the path of their key as place.
+    ///
+    /// ```
+    /// use localshape::scene::{BodyLists, Limits, Scene, SceneKeys};
+    /// let keys = localshape::toml::from_str(
+    ///     "time.duration = 1
+    ///     run = [{ name = 'One', model = { kind = 'shape-based', stiffness = 1e4 } }]
+    ///     [body]",
+    /// )?;
+    /// let nodes = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into).to_vec();
+    /// let triangle = BodyLists { nodes: Some(nodes), elements: Some(vec![vec![0, 1, 2]]), ..BodyLists::default() };
+    /// let keys = SceneKeys::new("triangle", keys, vec![triangle]);
+    /// assert_eq!(Scene::from_keys(&keys, &[], &Limits::default())?.bodies[0].body.len(), 3);
+    /// let error = Scene::from_keys(&keys, &["run[0].model.stiffness=-1".parse()?], &Limits::default()).unwrap_err();
+    /// assert_eq!(error.mistakes()[0].place, "run[0].model.stiffness");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The keys are not those of a scene. All mistakes are reported. A list in memory cannot be set.
+    pub fn from_keys(keys: &SceneKeys, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
+        let SceneKeys { name, text, lists } = keys;
+        if let Some(setting) = keys.of_lists(settings) {
+            let place = setting.key().to_owned();
+            let message = format!("`{place}` is in memory or contains what is, and cannot be set");
+            let help = Some("make a scene with another list".to_owned());
+            let (line, column, excerpt, marked) = Default::default();
+            let found = vec![Mistake { line, column, place, message, help, excerpt, marked }];
+            return Err(SceneError::Mistakes(Mistakes { file: name.clone(), found, total: 1 }));
+        }
+        Self::read(Document { text, name, settings, lists: Some(lists) }, Path::new(""), limits)
+    }
+}
