@@ -7,5 +7,5 @@ fn main() -> ExitCode {
     let words: Vec<_> = std::env::args_os().collect();
     #[cfg(feature = "render")]
     internals::settle(&words);
-    internals::run(words)
+    internals::run(words).into()
 }

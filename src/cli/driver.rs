@@ -4,17 +4,23 @@
 use super::failure::note;
 
 /// The vector width (bits) of the software driver, unless the user has set another one that works.
-#[cfg(target_os = "linux")]
 const VECTOR_WIDTH: [&str; 2] = ["LP_NATIVE_VECTOR_WIDTH", "256"];
 
 /// The widths that work. With less, the default on processors without wide vectors, Mesa 22.3 writes beyond its memory.
-#[cfg(target_os = "linux")]
 const WIDTHS: [&str; 2] = [VECTOR_WIDTH[1], "512"];
 
 /// The number of heaps of the C library (glibc), unless the user has set it. With a heap for each thread, several
 /// megabytes are reserved that no thread uses.
 #[cfg(target_os = "linux")]
 const HEAPS: [&str; 2] = ["MALLOC_ARENA_MAX", "1"];
+
+/// The variable of the environment with which a software driver draws the same on every processor, and its value; `None` if it has a
+/// possible one. It is read when the driver is loaded.
+pub fn width_to_set() -> Option<[&'static str; 2]> {
+    let width = std::env::var_os(VECTOR_WIDTH[0]);
+    let is_possible = width.is_some_and(|width| WIDTHS.iter().any(|possible| width == *possible));
+    (cfg!(target_os = "linux") && !is_possible).then_some(VECTOR_WIDTH)
+}
 
 /// Restarts the program (`exec`) with one heap and a fixed vector width of the software driver, so that pictures are
 /// equal on every processor. If the restart fails, the driver chooses the width.
@@ -32,7 +38,7 @@ pub fn settle(words: &[std::ffi::OsString]) {
     let draws = draws || command == "info";
     let is_quiet = |word: &std::ffi::OsString| word == "--quiet" || word.to_string_lossy().starts_with("-q");
     let width = var_os(VECTOR_WIDTH[0]).filter(|width| !width.is_empty());
-    let is_possible = width.as_ref().is_some_and(|width| WIDTHS.iter().any(|possible| width == possible));
+    let is_possible = width_to_set().is_none();
     let to_set = [(VECTOR_WIDTH, is_possible), (HEAPS, var_os(HEAPS[0]).is_some())];
     let to_set: Vec<_> =
         to_set.into_iter().filter_map(|([name, value], is_set)| (!is_set).then_some((name, value))).collect();

@@ -39,18 +39,20 @@ mod simulate;
 #[cfg(feature = "render")]
 mod still;
 
-#[cfg(feature = "render")]
-pub use driver::settle;
 pub use {
     console::print,
     failure::{Failure, Status},
     interrupt::{listen, requested},
     options::ThreadOptions,
 };
+#[cfg(feature = "render")]
+pub use {
+    driver::{settle, width_to_set},
+    still::{doubts, unprintable},
+};
 
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
-use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
@@ -107,18 +109,17 @@ enum Command {
 ///
 /// Results go to standard output, progress and errors to standard error. Signals are handled from the start of the
 /// first scene.
-pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+pub fn run(words: impl IntoIterator<Item = OsString>) -> Status {
     let words: Vec<_> = words.into_iter().collect();
     interrupt::outlive_file_limits();
-    let status = match Cli::try_parse_from(&words) {
+    match Cli::try_parse_from(&words) {
         Ok(cli) => cli.command.run(&words).unwrap_or_else(Failure::report),
         // Help and version are such errors, too. If printing fails, there is nowhere to report it.
         Err(error) => {
             let _ = error.print();
             if error.use_stderr() { Status::Usage } else { Status::Done }
         }
-    };
-    status.into()
+    }
 }
 
 impl Command {

@@ -125,6 +125,12 @@ pub(super) fn check_type(print: Option<&Print>, picture: &Picture, file: &str) -
     refuse(print, print.and_then(|print| print.too_small(f64::from(smallest_type(picture)))), file)
 }
 
+/// Why a picture of a scene cannot be printed, and the remedy, in words.
+pub fn unprintable(scene: &Scene, picture: &Picture) -> Option<String> {
+    let small = scene.view.print.as_ref()?.too_small(f64::from(smallest_type(picture)))?;
+    Some(small.join(": "))
+}
+
 /// Refuses some runs of a scene that cannot be printed.
 pub(super) fn check_print(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     refuse(scene.view.print.as_ref(), too_small(scene, runs), &source_of(scene))
@@ -158,7 +164,7 @@ fn first_picture(scene: &Scene, runs: &[usize]) -> Picture {
 
 /// Warnings of pictures, and the parts that have no room in them. Warned is of a body that leaves its panel at the start, before a
 /// camera that stands still, and of type that is too small to be printed.
-pub(super) fn doubts(scene: &Scene) -> (Vec<Mistake>, Vec<String>) {
+pub fn doubts(scene: &Scene) -> (Vec<Mistake>, Vec<String>) {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let is_cut = || first_picture(scene, &runs).panels.iter().any(|panel| panel.is_cut);
     let cut = (!scene.view.camera.follow && is_cut()).then(|| {

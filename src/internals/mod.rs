@@ -1,11 +1,13 @@
 //! Functions for the program, the benchmarks and the tests that run the program. They may change at any time.
 
-#[cfg(feature = "render")]
-pub use crate::cli::settle;
 pub use crate::cli::{Failure, Status, ThreadOptions, listen, print, requested, run};
+#[cfg(feature = "render")]
+pub use crate::cli::{doubts, settle, unprintable, width_to_set};
 pub use crate::colour::{ciede2000, lab, linear};
 pub use crate::golden::Pixels;
 pub use crate::golden::page::{Page, PicturePair};
+#[cfg(feature = "render")]
+pub use crate::output::encode_print;
 pub use crate::output::{
     Clock, Compression, Shown, Spent, Tags, Timings, encode, exact, is_folder, read_file, read_tags, rows_as_csv,
     shell::line as command_line, thread_time, write_whole,

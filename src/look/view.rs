@@ -111,7 +111,7 @@ fn open<T, S: Serializer>(_: &T, serializer: S) -> Result<S::Ok, S::Error> {
 
 impl View {
     /// The runs that pictures of other runs need, each with the key that names it.
-    pub(crate) fn compared(&self) -> [Option<(&'static str, usize)>; 2] {
+    pub fn compared(&self) -> [Option<(&'static str, usize)>; 2] {
         let ghost = if let Some(Ghost::Run(run)) = self.ghost { Some(run) } else { None };
         let to = self.colour.and_then(|scale| scale.to);
         [ghost.map(|run| ("ghost", run)), to.map(|run| ("colour.to", run))]

@@ -38,6 +38,8 @@ pub(crate) use folder::{Access, Claimed, Folder};
 pub use frame_folder::FrameFolder;
 pub(crate) use frame_name::FRAME_FILES;
 pub(crate) use lock::FolderLock;
+#[cfg(feature = "render")]
+pub use png::encode_print;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use summary::{Numbers, Outcome, RunEntry, RunStatus, SUMMARY_FILE, Summary, document};
@@ -49,7 +51,7 @@ pub(crate) use {
     drawn::{encode_like, frame_files, is_drawn, packed, picture_size},
     frame_name::frame_file_name,
     frames::{FrameWriter, PixelFrame},
-    png::{Texts, encode_print},
+    png::Texts,
 };
 
 /// Rows of equal length as CSV (RFC 4180, with line feeds), quoted where necessary.

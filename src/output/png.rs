@@ -170,7 +170,7 @@ pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], c
 }
 
 /// Encodes a picture likewise, with its pixels per inch in print if they are known (`pHYs`).
-pub(crate) fn encode_print(
+pub fn encode_print(
     size: [u32; 2],
     pixels: &[u8],
     texts: &[(&'static str, String)],

@@ -353,6 +353,11 @@ pub(crate) struct Bead {
 }
 
 impl Picture {
+    /// Width and height (px), for its [`Renderer`](crate::Renderer).
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// Its lines of text.
     pub(crate) fn words(&self) -> impl Iterator<Item = &TextRun> {
         self.above.iter().filter_map(|item| if let Item::Text(run) = item { Some(run) } else { None })

@@ -79,6 +79,15 @@ impl<'a> Runner<'a> {
         Self::among(runs.len(), scene, runs)
     }
 
+    /// The given runs of a scene at their start, of whose course is kept what pictures show: charts, paths, cameras that follow. See
+    /// [`Self::take_history`].
+    ///
+    /// # Panics
+    /// The scene has no such run.
+    pub fn for_pictures(scene: &'a Scene, runs: &[usize]) -> Self {
+        Self::new(scene, runs).with_time_series(scene.time_series())
+    }
+
     /// A runner for some of `all` runs that share the threads.
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
         /// The least number of elements for each additional thread within a run.
@@ -264,8 +273,8 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// The time series recorded so far. Recording ends.
-    pub(crate) fn take_history(&mut self) -> History {
+    /// What was kept of the course so far. No more is kept.
+    pub fn take_history(&mut self) -> History {
         let take = |running: &mut Running| {
             running.notes.clear();
             let run = running.series.run;
