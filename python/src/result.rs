@@ -1,0 +1,236 @@
+//! The results of a simulation: arrays of all frames, and their pictures.
+
+use crate::interrupt::Slices;
+use crate::picture::Picture;
+use crate::scene::run_of;
+use localshape::Runner;
+use localshape::glam::DVec3;
+use localshape::runner::{Frame, History};
+use localshape::sim::{Diagnostic, Diagnostics, Divergence, Status, Value};
+use numpy::ndarray::Array;
+use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// The frames of a simulated scene: `result["NAME"]` has the arrays of a run, and `result.frame(t)` is a picture.
+#[pyclass(frozen, module = "localshape")]
+pub(crate) struct Result {
+    scene: Arc<localshape::Scene>,
+    /// The frames without positions and velocities, which are in the arrays of the runs.
+    frames: Vec<Frame>,
+    /// What pictures show of the course.
+    history: History,
+    runs: Vec<Py<RunResult>>,
+}
+
+/// One run in all frames.
+#[pyclass(frozen, get_all, module = "localshape")]
+pub(crate) struct RunResult {
+    /// The name of the run.
+    name: String,
+    /// Time step (s).
+    step: f64,
+    /// Time of each frame (s): F, float64.
+    time: Py<PyArray1<f64>>,
+    /// Position of each node in each frame (m): F × N × 3, float64.
+    position: Py<PyArray3<f64>>,
+    /// Velocity of each node in each frame (m/s): F × N × 3, float64.
+    velocity: Py<PyArray3<f64>>,
+    /// The diagnostics of each frame, by the names in `diagnostics.csv`: arrays of length F, of vectors F × 3.
+    diagnostics: Py<PyAny>,
+    /// Where and when the run diverged, if it did.
+    divergence: Option<Py<PyAny>>,
+}
+
+/// Positions and velocities of a run, frame after frame.
+type Nodes = [Vec<f64>; 2];
+
+/// Simulates some runs of a scene to its end.
+pub(crate) fn simulate(py: Python<'_>, scene: Arc<localshape::Scene>, runs: &[usize]) -> PyResult<Result> {
+    if runs.is_empty() {
+        return Err(PyValueError::new_err("there are no runs to simulate; expected the name of at least one"));
+    }
+    let (frames, nodes, history) = py.detach(|| course(&scene, runs))?;
+    let of_run = |(place, nodes)| Py::new(py, RunResult::new(py, &scene, &frames, place, nodes)?);
+    let runs = nodes.into_iter().enumerate().map(of_run).collect::<PyResult<_>>()?;
+    Ok(Result { scene, frames, history, runs })
+}
+
+/// The frames of some runs, the nodes of each run, and what pictures show of the course.
+fn course(scene: &localshape::Scene, runs: &[usize]) -> PyResult<(Vec<Frame>, Vec<Nodes>, History)> {
+    let count = scene.last_frame() as usize + 1;
+    let reserve = |run: &usize| -> PyResult<Nodes> {
+        let mut nodes = Nodes::default();
+        for numbers in &mut nodes {
+            numbers.try_reserve_exact(3 * scene.runs[*run].body().len() * count).map_err(|_| {
+                PyMemoryError::new_err(format!("{count} frames do not fit into memory; use fewer frames per second"))
+            })?;
+        }
+        Ok(nodes)
+    };
+    let mut nodes = runs.iter().map(reserve).collect::<PyResult<Vec<_>>>()?;
+    let (mut frames, mut slices) = (Vec::with_capacity(count), Slices::new());
+    let mut runner = Runner::for_pictures(scene, runs);
+    for index in 0..count as u64 {
+        slices.until(|steps| runner.advance_towards(scene.moment(index), steps))?;
+        let mut frame = runner.frame(index);
+        for (run, [position, velocity]) in frame.runs.iter_mut().zip(&mut nodes) {
+            position.extend(std::mem::take(&mut run.snapshot.position).iter().flat_map(|at| at.to_array()));
+            velocity.extend(std::mem::take(&mut run.snapshot.velocity).iter().flat_map(|at| at.to_array()));
+        }
+        frames.push(frame);
+    }
+    scene.check_recordings()?;
+    Ok((frames, nodes, runner.take_history()))
+}
+
+impl RunResult {
+    /// The run at a place among those of some frames. Its arrays are the buffers of its nodes.
+    fn new(py: Python<'_>, scene: &localshape::Scene, frames: &[Frame], place: usize, nodes: Nodes) -> PyResult<Self> {
+        let of_run = || frames.iter().map(|frame| &frame.runs[place]);
+        let run = &scene.runs[frames[0].runs[place].run];
+        let shape = [frames.len(), run.body().len(), 3];
+        let array = |numbers| {
+            let array = Array::from_shape_vec(shape, numbers).expect("three numbers of each node in each frame");
+            fixed(array.into_pyarray(py))
+        };
+        let [position, velocity] = nodes.map(array);
+        let time: Vec<f64> = of_run().map(|run| run.snapshot.time).collect();
+        let diagnostics = tables(py, &time, &of_run().map(|run| run.snapshot.diagnostics).collect::<Vec<_>>())?;
+        let divergence = match of_run().next_back().map(|last| last.snapshot.status) {
+            Some(Status::Diverged(found)) => Some(divergence(py, scene, &run.of, found)?),
+            _ => None,
+        };
+        let time = fixed(PyArray1::from_vec(py, time));
+        Ok(Self { name: run.name.clone(), step: run.step, time, position, velocity, diagnostics, divergence })
+    }
+}
+
+/// An array that cannot be changed: pictures show it.
+fn fixed<T: numpy::Element, D: numpy::ndarray::Dimension>(
+    array: Bound<'_, numpy::PyArray<T, D>>,
+) -> Py<numpy::PyArray<T, D>> {
+    array.readwrite().make_nonwriteable();
+    array.unbind()
+}
+
+/// Where and when a run of some bodies of a scene diverged, as `localshape.Divergence`.
+pub(crate) fn divergence(
+    py: Python<'_>,
+    scene: &localshape::Scene,
+    of: &[usize],
+    found: Divergence,
+) -> PyResult<Py<PyAny>> {
+    let Divergence { time, step, part, element, is_end } = found;
+    let body = of.get(part).map_or("", |&body| &*scene.bodies[body].name);
+    let made = py.import("localshape._tables")?.getattr("Divergence")?;
+    Ok(made.call1((time, step, body, element, is_end))?.unbind())
+}
+
+/// The diagnostics at some times (s) as `localshape.Diagnostics`: an array of each, with a row of three for a vector.
+pub(crate) fn tables(py: Python<'_>, time: &[f64], rows: &[Diagnostics]) -> PyResult<Py<PyAny>> {
+    let columns = PyDict::new(py);
+    columns.set_item("time", PyArray1::from_slice(py, time))?;
+    for diagnostic in Diagnostic::ALL {
+        let values = || rows.iter().map(|row| diagnostic.value(row));
+        let vectors: Option<Vec<DVec3>> =
+            values().map(|value| if let Value::Vector(vector) = value { Some(vector) } else { None }).collect();
+        match vectors {
+            Some(vectors) => columns.set_item(diagnostic.key(), vectors_as_array(py, &vectors))?,
+            None => columns.set_item(diagnostic.key(), PyArray1::from_iter(py, values().map(Value::size)))?,
+        }
+    }
+    Ok(py.import("localshape._tables")?.getattr("Diagnostics")?.call1((columns,))?.unbind())
+}
+
+/// Vectors as an array of a row for each.
+pub(crate) fn vectors_as_array<'py>(py: Python<'py>, vectors: &[DVec3]) -> Bound<'py, numpy::PyArray2<f64>> {
+    let numbers = vectors.iter().flat_map(|vector| vector.to_array()).collect();
+    Array::from_shape_vec([vectors.len(), 3], numbers).expect("three numbers of each").into_pyarray(py)
+}
+
+#[pymethods]
+impl Result {
+    /// The names of the runs.
+    #[getter]
+    fn runs(&self) -> Vec<String> {
+        self.runs.iter().map(|run| run.get().name.clone()).collect()
+    }
+
+    fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<RunResult>> {
+        match self.runs.iter().find(|run| run.get().name == name) {
+            Some(run) => Ok(run.clone_ref(py)),
+            None => {
+                run_of(&self.scene, name)?;
+                let message = format!("the run “{name}” was not simulated; the result has {}", self.runs().join(", "));
+                Err(pyo3::exceptions::PyKeyError::new_err(message))
+            }
+        }
+    }
+
+    fn __len__(&self) -> usize {
+        self.runs.len()
+    }
+
+    fn __contains__(&self, name: &str) -> bool {
+        self.runs.iter().any(|run| run.get().name == name)
+    }
+
+    /// The picture of the frame nearest to a time (s).
+    ///
+    /// Raises `ValueError` for a time before the start or after the last frame.
+    fn frame(&self, py: Python<'_>, t: f64) -> PyResult<Picture> {
+        let (last, duration) = (self.frames.len() - 1, self.scene.duration);
+        let number = (t * self.scene.frames_per_second).round();
+        if !(t >= 0.0 && (number <= last as f64 || t <= duration)) {
+            let end = self.scene.frame_time(last as u64);
+            return Err(PyValueError::new_err(format!("there is no frame at {t} s; frames are from 0 to {end} s")));
+        }
+        let frame = self.whole(py, (number as usize).min(last))?;
+        self.check_compared()?;
+        py.detach(|| Picture::compose(&self.scene, &self.history, frame)).map_err(PyValueError::new_err)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<localshape.Result “{}”: {} frames of {}>",
+            self.scene.title,
+            self.frames.len(),
+            self.runs().join(", ")
+        )
+    }
+}
+
+impl Result {
+    /// A frame with its positions and velocities.
+    fn whole(&self, py: Python<'_>, index: usize) -> PyResult<Frame> {
+        let mut frame = self.frames[index].clone();
+        for (run, arrays) in frame.runs.iter_mut().zip(&self.runs) {
+            let vectors = |array: &Py<PyArray3<f64>>| -> PyResult<Vec<DVec3>> {
+                let array = array.bind(py).try_readonly()?;
+                let numbers = 3 * array.shape()[1];
+                let of_frame = &array.as_slice()?[index * numbers..][..numbers];
+                Ok(of_frame.as_chunks::<3>().0.iter().map(|&vector| vector.into()).collect())
+            };
+            run.snapshot.position = vectors(&arrays.get().position)?;
+            run.snapshot.velocity = vectors(&arrays.get().velocity)?;
+        }
+        Ok(frame)
+    }
+
+    /// Refuses pictures that compare runs with one that was not simulated.
+    fn check_compared(&self) -> PyResult<()> {
+        let is_missing = |run: usize| !self.frames[0].runs.iter().any(|simulated| simulated.run == run);
+        match self.scene.view.compared().into_iter().flatten().find(|(_, run)| is_missing(*run)) {
+            Some((key, run)) => {
+                let name = &self.scene.runs[run].name;
+                let message =
+                    format!("the run “{name}”, which `view.{key}` needs, was not simulated; simulate it, too");
+                Err(PyValueError::new_err(message))
+            }
+            None => Ok(()),
+        }
+    }
+}

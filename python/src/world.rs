@@ -1,0 +1,182 @@
+//! Worlds: the bodies of one run, advanced step by step.
+
+use crate::interrupt::Slices;
+use crate::result::{divergence, tables, vectors_as_array};
+use crate::{convert, error};
+use localshape::glam::DVec3;
+use localshape::sim::{self, State, Status};
+use numpy::{PyArray2, PyUntypedArray};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// The bodies of one run of a scene, advanced step by step. `scene.world("NAME")` makes it.
+///
+/// Worlds in several threads run at once. Two threads cannot use one world at the same time: `RuntimeError`.
+#[pyclass(frozen, module = "localshape")]
+pub(crate) struct World {
+    scene: Arc<localshape::Scene>,
+    run: usize,
+    world: Mutex<sim::World>,
+}
+
+impl World {
+    /// The world of a run of a scene, at its start.
+    pub(crate) fn new(scene: &Arc<localshape::Scene>, run: usize) -> Self {
+        Self { scene: Arc::clone(scene), run, world: Mutex::new(scene.world(run)) }
+    }
+
+    /// The world, unless another thread uses it.
+    fn now(&self) -> PyResult<MutexGuard<'_, sim::World>> {
+        self.world
+            .try_lock()
+            .map_err(|_| PyRuntimeError::new_err("another thread is using this world; give it one of its own"))
+    }
+
+    /// A row of three numbers for each node.
+    fn rows(&self, array: &Bound<'_, PyUntypedArray>, place: &str) -> PyResult<Vec<DVec3>> {
+        let nodes = self.scene.runs[self.run].body().len();
+        let expected = format!("({nodes}, 3), one row for each node");
+        let numbers = convert::numbers(array, place, &expected, |shape| shape == [nodes, 3])?;
+        Ok(numbers.as_chunks::<3>().0.iter().map(|&vector| vector.into()).collect())
+    }
+
+    /// Sets positions or velocities, or both.
+    fn set_nodes(&self, position: Option<Vec<DVec3>>, velocity: Option<Vec<DVec3>>) -> PyResult<()> {
+        let mut world = self.now()?;
+        let position = position.unwrap_or_else(|| world.state().position.clone());
+        let velocity = velocity.unwrap_or_else(|| world.state().velocity.clone());
+        world.set_nodes(position, velocity).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+}
+
+#[pymethods]
+impl World {
+    /// Advances by a number of steps. Other threads of Python go on meanwhile, and Ctrl-C is heard: the world is then between two
+    /// steps. After a divergence only the clock advances.
+    #[pyo3(signature = (steps=1))]
+    fn step(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
+        let mut left = steps;
+        py.detach(|| {
+            let mut world = self.now()?;
+            Slices::new().until(|most| {
+                let taken = left.min(most);
+                world.advance(taken);
+                left -= taken;
+                left == 0
+            })
+        })?;
+        Ok(self.scene.check_recordings()?)
+    }
+
+    /// Position of each node (m): N × 3, float64. A copy; assign an array to move the nodes.
+    #[getter]
+    fn position<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(vectors_as_array(py, &self.now()?.state().position))
+    }
+
+    #[setter]
+    fn set_position(&self, position: &Bound<'_, PyUntypedArray>) -> PyResult<()> {
+        self.set_nodes(Some(self.rows(position, "position")?), None)
+    }
+
+    /// Velocity of each node (m/s): N × 3, float64. A copy; assign an array to set the velocities.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(vectors_as_array(py, &self.now()?.state().velocity))
+    }
+
+    #[setter]
+    fn set_velocity(&self, velocity: &Bound<'_, PyUntypedArray>) -> PyResult<()> {
+        self.set_nodes(None, Some(self.rows(velocity, "velocity")?))
+    }
+
+    /// The internal forces on each node in the present state (N): N × 3, float64.
+    #[getter]
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(vectors_as_array(py, &self.now()?.forces()))
+    }
+
+    /// Sets the constant force on each node (N) from now on: N × 3; `None` for no forces.
+    #[pyo3(signature = (forces))]
+    fn set_forces(&self, forces: Option<&Bound<'_, PyUntypedArray>>) -> PyResult<()> {
+        let forces = forces.map(|forces| self.rows(forces, "forces")).transpose()?.unwrap_or_default();
+        self.now()?.set_forces(forces).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// Sets the acceleration of gravity (m/s²) from now on: three numbers.
+    fn set_gravity(&self, gravity: [f64; 3]) -> PyResult<()> {
+        self.now()?.set_gravity(gravity.into()).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// Mass of each node (kg): N, float64.
+    #[getter]
+    fn mass<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+        numpy::PyArray1::from_slice(py, self.scene.runs[self.run].body().mass())
+    }
+
+    /// Time (s).
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.now()?.steps() as f64 * self.dt())
+    }
+
+    /// Time step (s).
+    #[getter]
+    fn dt(&self) -> f64 {
+        self.scene.runs[self.run].step
+    }
+
+    /// Number of steps taken.
+    #[getter]
+    fn steps(&self) -> PyResult<u64> {
+        Ok(self.now()?.steps())
+    }
+
+    /// The diagnostics of the present state, by the names in `diagnostics.csv`: numbers, and arrays of three for vectors.
+    #[getter]
+    fn diagnostics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (time, diagnostics) = (self.time()?, self.now()?.diagnostics());
+        tables(py, &[time], &[diagnostics])?.bind(py).call_method0("_only_row")
+    }
+
+    /// Where and when the world diverged, if it did.
+    #[getter]
+    fn divergence(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        match self.now()?.status() {
+            Status::Diverged(found) => divergence(py, &self.scene, &self.scene.runs[self.run].of, found).map(Some),
+            Status::Ok => Ok(None),
+        }
+    }
+
+    /// The whole state as bytes, to be assigned to this world or another one of the same run, which then goes on with the same
+    /// bits.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.now()?.state().to_bytes()))
+    }
+
+    #[setter]
+    fn set_state(&self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
+        let mut world = self.now()?;
+        let state = State::from_bytes(state).filter(|state| world.takes(state)).ok_or_else(|| {
+            error::at(
+                py,
+                "state",
+                "`state` is not the state of a world of this run".to_owned(),
+                Some("assign what `state` of such a world was"),
+            )
+        })?;
+        world.set_state(state);
+        Ok(())
+    }
+
+    fn __copy__(&self) -> PyResult<Self> {
+        Ok(Self { scene: Arc::clone(&self.scene), run: self.run, world: Mutex::new(self.now()?.clone()) })
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        Ok(format!("<localshape.World “{}” at {} s>", self.scene.runs[self.run].name, self.time()?))
+    }
+}

@@ -1,0 +1,112 @@
+"""Random arrays and values at every function: exceptions, never a crash."""
+
+import os
+
+import numpy as np
+import pytest
+from conftest import CUBES, TRIANGLE
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from localshape import Scene
+
+# As many examples as a test may take; more with LOCALSHAPE_EXAMPLES.
+usual = settings(
+    max_examples=int(os.environ.get("LOCALSHAPE_EXAMPLES", 100)),
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+
+SHAPES = arrays.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=6) | st.sampled_from([(4, 2), (4, 3), (2, 4), (12, 3), (4,)])
+#: Small numbers, so that some arrays are meshes, and any others.
+DTYPES = arrays.scalar_dtypes() | st.sampled_from(["f8", "i8", "u1", "f4", "O"])
+NUMBERS = arrays.arrays(st.sampled_from(["f8", "i8", "i4", "u8", "f4"]), SHAPES, elements=st.integers(0, 4))
+ARRAYS = NUMBERS | DTYPES.flatmap(lambda dtype: arrays.arrays(dtype, SHAPES) if dtype != "O" else st.just(np.array([None, 1], object)))
+PLAIN = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5) | st.binary(max_size=5) | ARRAYS
+VALUES = st.recursive(PLAIN, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3), max_leaves=5)
+
+#: What a wrong argument may raise.
+WRONG = (ValueError, TypeError, KeyError, OverflowError, OSError, MemoryError)
+LISTS = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"]
+CORNERS = {"nodes": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]), "elements": np.array([[0, 1, 2], [1, 3, 2]])}
+
+
+def tried(function, *arguments, **keys):
+    """Calls a function, which may refuse its arguments but not fail otherwise."""
+    try:
+        return function(*arguments, **keys)
+    except WRONG as error:
+        assert str(error), "it says why"
+
+
+@usual
+@given(st.dictionaries(st.sampled_from(LISTS), ARRAYS, max_size=4))
+def test_bodies(lists):
+    scene = tried(Scene, body={**CORNERS, **lists}, **TRIANGLE)
+    if scene is not None:
+        position = scene.simulate()["One"].position
+        assert position.shape[0] == 3 and np.isfinite(position).all()
+
+
+@usual
+@given(st.dictionaries(st.sampled_from([*CUBES, "hold", "grab", "title", "contact", "x"]), VALUES, max_size=3))
+def test_keys(keys):
+    tried(Scene, **{**CUBES, **keys})
+
+
+@pytest.fixture(scope="module")
+def cubes():
+    scene = Scene(**CUBES)
+    return scene, scene.simulate(), scene.world("Springs")
+
+
+KEYS = st.sampled_from(["gravity", "run[0].model", "run[1].step", "view.labels", "body", "body.offset", "a.b[", "[0]", "time.duration"]) | st.text(max_size=9)
+
+
+@usual
+@given(KEYS, VALUES)
+def test_settings(cubes, key, value):
+    tried(Scene(**CUBES).set, key, value)
+    tried(cubes[0].simulate, value)
+    tried(cubes[0].world, value)
+    tried(Scene.load, value)
+
+
+@usual
+@given(VALUES)
+def test_results(cubes, value):
+    _, result, _ = cubes
+    tried(result.__getitem__, value)
+    tried(result.frame, value)
+    tried(result.__contains__, value)
+
+
+@usual
+@given(VALUES, st.integers(0, 3))
+def test_worlds(cubes, value, steps):
+    _, _, world = cubes
+    state = world.state
+    for name in ("position", "velocity", "state"):
+        tried(setattr, world, name, value)
+    tried(world.set_forces, value)
+    tried(world.set_gravity, value)
+    world.step(steps)
+    if not isinstance(value, (int, np.integer)) or value < 1000:
+        tried(world.step, value)
+    assert world.position.shape == (12, 3)
+    assert np.isfinite(world.position).all()
+    tried(world.set_forces, None)
+    world.state = state
+
+
+@usual
+@given(st.binary(max_size=200))
+def test_damaged_states(cubes, noise):
+    _, _, world = cubes
+    state = world.state
+    at = len(noise) * 7 % len(state)
+    tried(setattr, world, "state", state[:at] + noise + state[at + len(noise) :])
+    world.step(2)
+    world.state = state
