@@ -56,6 +56,7 @@ pub(crate) fn as_dict<'py>(py: Python<'py>, mistake: &Mistake) -> PyResult<Bound
 }
 
 /// `localshape.DeviceError`: there is no graphics device, or it failed.
+#[cfg(feature = "render")]
 pub(crate) fn of_device(py: Python<'_>, error: &dyn Error) -> PyErr {
     let words = with_causes(error);
     let made = || py.import("localshape._errors")?.getattr("DeviceError")?.call1((words,));

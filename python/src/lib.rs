@@ -5,6 +5,7 @@
 mod convert;
 mod error;
 mod interrupt;
+#[cfg(feature = "render")]
 mod picture;
 mod result;
 mod scene;
@@ -16,6 +17,7 @@ mod _core {
     use pyo3::prelude::*;
     use std::ffi::OsString;
 
+    #[cfg(feature = "render")]
     #[pymodule_export]
     use super::picture::Picture;
     #[pymodule_export]
@@ -28,6 +30,7 @@ mod _core {
     /// Runs the program `localshape` with the words of a command line, and returns its exit status.
     #[pyfunction]
     fn _program(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
+        #[cfg(feature = "render")]
         super::picture::prepare_driver(py)?;
         Ok(py.detach(|| localshape::internals::run(words) as u8))
     }

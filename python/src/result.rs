@@ -1,6 +1,7 @@
 //! The results of a simulation: arrays of all frames, and their pictures.
 
 use crate::interrupt::Slices;
+#[cfg(feature = "render")]
 use crate::picture::Picture;
 use crate::scene::run_of;
 use localshape::Runner;
@@ -21,6 +22,7 @@ pub(crate) struct Result {
     /// The frames without positions and velocities, which are in the arrays of the runs.
     frames: Vec<Frame>,
     /// What pictures show of the course.
+    #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "pictures alone show it"))]
     history: History,
     runs: Vec<Py<RunResult>>,
 }
@@ -181,6 +183,7 @@ impl Result {
     /// The picture of the frame nearest to a time (s).
     ///
     /// Raises `ValueError` for a time before the start or after the last frame.
+    #[cfg(feature = "render")]
     fn frame(&self, py: Python<'_>, t: f64) -> PyResult<Picture> {
         let (last, duration) = (self.frames.len() - 1, self.scene.duration);
         let number = (t * self.scene.frames_per_second).round();
@@ -203,6 +206,7 @@ impl Result {
     }
 }
 
+#[cfg(feature = "render")]
 impl Result {
     /// A frame with its positions and velocities.
     fn whole(&self, py: Python<'_>, index: usize) -> PyResult<Frame> {

@@ -3,7 +3,6 @@
 use crate::result::{self, Result};
 use crate::world::World;
 use crate::{convert, error};
-use localshape::internals::doubts;
 use localshape::scene::{Limits, SceneKeys, Setting};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -118,9 +117,10 @@ impl Scene {
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let scene = self.now();
-        let (of_pictures, _) = py.detach(|| doubts(&scene));
-        let found = scene.warnings.iter().chain(&of_pictures);
-        let found = found.map(|one| error::as_dict(py, one)).collect::<PyResult<Vec<_>>>()?;
+        let mut found = scene.warnings.clone();
+        #[cfg(feature = "render")]
+        found.extend(py.detach(|| localshape::internals::doubts(&scene).0));
+        let found = found.iter().map(|one| error::as_dict(py, one)).collect::<PyResult<Vec<_>>>()?;
         py.import("localshape._errors")?.call_method1("mistakes", (PyList::new(py, found)?,))
     }
 
