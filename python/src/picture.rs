@@ -54,7 +54,7 @@ impl Device {
 
     /// Red, green and blue of each pixel of a picture, which may be lit.
     fn draw(&mut self, picture: &picture::Picture, is_lit: bool) -> Result<Vec<u8>, Failed> {
-        if !self.renderer.as_ref().is_some_and(|(lit, size, _)| (*lit, *size) == (is_lit, picture.size())) {
+        if self.renderer.as_ref().is_none_or(|(lit, size, _)| (*lit, *size) != (is_lit, picture.size())) {
             let gpu = self.gpu.as_ref().filter(|_| is_lit);
             self.renderer = Some((is_lit, picture.size(), Renderer::new(gpu, picture.size())?));
         }

@@ -1,6 +1,6 @@
 //! The results of a simulation: arrays of all frames, and their pictures.
 
-use crate::interrupt::Slices;
+use crate::interrupt::{Slices, in_pool};
 #[cfg(feature = "render")]
 use crate::picture::Picture;
 use crate::scene::run_of;
@@ -54,14 +54,18 @@ pub(crate) fn simulate(py: Python<'_>, scene: Arc<localshape::Scene>, runs: &[us
     if runs.is_empty() {
         return Err(PyValueError::new_err("there are no runs to simulate; expected the name of at least one"));
     }
-    let (frames, nodes, history) = py.detach(|| course(&scene, runs))?;
+    let (frames, nodes, history) = py.detach(|| in_pool(|go_on| course(&scene, runs, go_on)))?;
     let of_run = |(place, nodes)| Py::new(py, RunResult::new(py, &scene, &frames, place, nodes)?);
     let runs = nodes.into_iter().enumerate().map(of_run).collect::<PyResult<_>>()?;
     Ok(Result { scene, frames, history, runs })
 }
 
-/// The frames of some runs, the nodes of each run, and what pictures show of the course.
-fn course(scene: &localshape::Scene, runs: &[usize]) -> PyResult<(Vec<Frame>, Vec<Nodes>, History)> {
+/// The frames of some runs, the nodes of each run, and what pictures show of the course. An error of `go_on` ends it.
+fn course(
+    scene: &localshape::Scene,
+    runs: &[usize],
+    go_on: &dyn Fn() -> PyResult<()>,
+) -> PyResult<(Vec<Frame>, Vec<Nodes>, History)> {
     let count = scene.last_frame() as usize + 1;
     let reserve = |run: &usize| -> PyResult<Nodes> {
         let mut nodes = Nodes::default();
@@ -76,7 +80,7 @@ fn course(scene: &localshape::Scene, runs: &[usize]) -> PyResult<(Vec<Frame>, Ve
     let (mut frames, mut slices) = (Vec::with_capacity(count), Slices::new());
     let mut runner = Runner::for_pictures(scene, runs);
     for index in 0..count as u64 {
-        slices.until(|steps| runner.advance_towards(scene.moment(index), steps))?;
+        slices.until(|steps| runner.advance_towards(scene.moment(index), steps), go_on)?;
         let mut frame = runner.frame(index);
         for (run, [position, velocity]) in frame.runs.iter_mut().zip(&mut nodes) {
             position.extend(std::mem::take(&mut run.snapshot.position).iter().flat_map(|at| at.to_array()));

@@ -1,6 +1,6 @@
 //! Worlds: the bodies of one run, advanced step by step.
 
-use crate::interrupt::Slices;
+use crate::interrupt::{Slices, hear};
 use crate::result::{divergence, tables, vectors_as_array};
 use crate::{convert, error};
 use localshape::glam::DVec3;
@@ -60,12 +60,13 @@ impl World {
         let mut left = steps;
         py.detach(|| {
             let mut world = self.now()?;
-            Slices::new().until(|most| {
+            let advance = |most| {
                 let taken = left.min(most);
                 world.advance(taken);
                 left -= taken;
                 left == 0
-            })
+            };
+            Slices::new().until(advance, hear)
         })?;
         Ok(self.scene.check_recordings()?)
     }
