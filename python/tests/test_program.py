@@ -13,8 +13,8 @@ PROGRAM = [sys.executable, "-m", "localshape"]
 def test_it_is_the_program(program, cubes_file):
     done = subprocess.run([*PROGRAM, "check", cubes_file, "--json"], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0 and done.stdout == program("check", cubes_file, "--json")
-    wrong = subprocess.run([*PROGRAM, "chek"], capture_output=True, text=True, timeout=120)
-    assert wrong.returncode == 2 and "unrecognized subcommand 'chek'" in wrong.stderr
+    wrong = subprocess.run([*PROGRAM, "nothing"], capture_output=True, text=True, timeout=120)
+    assert wrong.returncode == 2 and "subcommand 'nothing'" in wrong.stderr
 
 
 def test_it_hears_ctrl_c(tmp_path):
