@@ -6,6 +6,7 @@ mod cubes;
 mod cuts;
 mod draft;
 mod embed;
+mod facet;
 mod graded;
 mod lattice;
 mod parts;

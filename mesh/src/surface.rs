@@ -377,25 +377,33 @@ impl Surface {
         if count < 2 {
             return (0..count).map(is_out).collect();
         }
+        let mut outermost: Vec<usize> = (0..count).collect();
+        self.nested(piece_of, &pieces, |piece, around| {
+            let others = around.iter().map(|&(other, _)| other);
+            let found =
+                others.reduce(|best, other| if pieces[other].size() > pieces[best].size() { other } else { best });
+            outermost[piece] = found.unwrap_or(piece);
+        });
+        outermost.into_iter().map(is_out).collect()
+    }
+
+    /// Calls `visit` with each piece and the closed ones that go around its first point, with their winding numbers.
+    pub(crate) fn nested(&self, piece_of: &[u32], pieces: &[Enclosed], mut visit: impl FnMut(usize, &[(usize, i32)])) {
         let columns = Columns::new(&self.points, &self.triangles);
-        let mut around: Vec<i32> = vec![0; count];
-        let turned_with = |piece: usize| {
-            let mut touched = Vec::new();
-            let from = pieces[piece].first;
+        for (piece, Enclosed { first: from, .. }) in pieces.iter().enumerate() {
+            let mut crossed = Vec::new();
             columns.crossings(from.y, from.z, |crossing| {
                 let other = piece_of[crossing.triangle as usize] as usize;
                 if other != piece && !pieces[other].is_open && crossing.is_after(from.x) {
-                    around[other] += crossing.sign;
-                    touched.push(other);
+                    crossed.push((other, crossing.sign));
                 }
             });
-            let outermost = touched.iter().copied().filter(|&other| around[other] != 0).reduce(|best, other| {
-                if pieces[other].volume.abs() > pieces[best].volume.abs() { other } else { best }
-            });
-            touched.iter().for_each(|&other| around[other] = 0);
-            outermost.unwrap_or(piece)
-        };
-        (0..count).map(turned_with).map(is_out).collect()
+            crossed.sort_unstable();
+            let of_piece = |all: &[(usize, i32)]| (all[0].0, all.iter().map(|(_, sign)| sign).sum());
+            let mut around: Vec<_> = crossed.chunk_by(|one, other| one.0 == other.0).map(of_piece).collect();
+            around.retain(|&(_, winding)| winding != 0);
+            visit(piece, &around);
+        }
     }
 }
 
@@ -405,7 +413,7 @@ pub(crate) struct Enclosed {
     /// Negative if its triangles look inwards.
     volume: f64,
     area: f64,
-    is_open: bool,
+    pub(crate) is_open: bool,
     /// A point of it.
     first: DVec3,
 }
@@ -413,7 +421,12 @@ pub(crate) struct Enclosed {
 impl Enclosed {
     /// Whether it is flat but for round-off.
     fn is_sheet(&self) -> bool {
-        self.volume.abs() <= 1e-9 * self.area * self.area.sqrt()
+        self.size() <= 1e-9 * self.area * self.area.sqrt()
+    }
+
+    /// Its volume, whichever way it looks.
+    pub(crate) fn size(&self) -> f64 {
+        self.volume.abs()
     }
 
     pub(crate) fn is_solid(&self) -> bool {

@@ -9,6 +9,7 @@ use crate::edges::{Sets, pieces};
 use glam::DVec3;
 use localshape_sim::geometry::{bounds, node_volumes};
 use rayon::prelude::*;
+use robust::{Coord3D, orient3d};
 
 /// Fills each part of a surface by itself, so that no element reaches from one into another.
 ///
@@ -79,11 +80,12 @@ fn volumes(part: &Filled) -> Vec<f64> {
     volumes
 }
 
-/// The part of the surface to which each point belongs, and how many there are: pieces whose boxes meet are one part. What
-/// encloses nothing, as a sheet does, goes with the nearest part.
+/// The part of the surface to which each point belongs, and how many there are: pieces that touch, or lie in the inside of each other,
+/// are one part, and so is an open piece with those whose boxes meet its own. What encloses nothing, as a sheet does, goes with the
+/// nearest part.
 ///
 /// # Errors
-/// If very many boxes lie side by side.
+/// If very many pieces lie about each other.
 fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
     let (piece_of, count) = pieces(surface.points.len(), &surface.triangles);
     let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
@@ -91,22 +93,40 @@ fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
         let (low, high) = &mut boxes[piece as usize];
         (*low, *high) = (low.min(point), high.max(point));
     }
-    let mean = boxes.iter().map(|(low, high)| low.distance(*high)).sum::<f64>() / count as f64;
-    let grid = Boxes::new(boxes.clone(), bounds(&surface.points), mean.max(f64::MIN_POSITIVE));
+    let of_triangles: Vec<u32> = surface.triangles.iter().map(|of| piece_of[of[0] as usize]).collect();
+    let enclosed = surface.enclosed(&of_triangles, count);
+    let grid = grid(&boxes);
     check(count, grid.in_cells().map(|all| all.len() * all.len() / 2).sum())?;
-    let mut sets = Sets::new(count);
+    let (mut sets, mut is_near) = (Sets::new(count), vec![false; count]);
     for all in grid.in_cells() {
         for (at, &one) in all.iter().enumerate() {
-            let meet = all[at + 1..].iter().filter(|&&other| grid.meet(other, boxes[one as usize]));
-            meet.for_each(|&other| sets.join(one, other));
+            for &other in all[at + 1..].iter().filter(|&&other| grid.meet(other, boxes[one as usize])) {
+                let pair = [one, other].map(|piece| piece as usize);
+                match pair.iter().any(|&piece| enclosed[piece].is_open) {
+                    true => sets.join(one, other),
+                    false => pair.iter().for_each(|&piece| is_near[piece] = true),
+                }
+            }
         }
+    }
+    if is_near.contains(&true) {
+        join_touching(surface, &of_triangles, &is_near, &mut sets)?;
+        surface.nested(&of_triangles, &enclosed, |piece, around| {
+            let nearest =
+                around.iter().min_by(|one, other| enclosed[one.0].size().total_cmp(&enclosed[other.0].size()));
+            if let Some(&(nearest, _)) = nearest
+                && around.iter().map(|(_, winding)| winding).sum::<i32>() > 0
+            {
+                sets.join(piece as u32, nearest as u32);
+            }
+        });
     }
     let set_of: Vec<u32> = (0..count as u32).map(|piece| sets.of(piece)).collect();
     for (&set, (low, high)) in set_of.iter().zip(boxes.clone()) {
         let whole = &mut boxes[set as usize];
         *whole = (whole.0.min(low), whole.1.max(high));
     }
-    let of_triangles: Vec<u32> = surface.triangles.iter().map(|of| set_of[piece_of[of[0] as usize] as usize]).collect();
+    let of_triangles: Vec<u32> = of_triangles.iter().map(|&piece| set_of[piece as usize]).collect();
     let enclosed = surface.enclosed(&of_triangles, count);
     let (solid, empty): (Vec<usize>, Vec<usize>) =
         (0..count).filter(|&set| set_of[set] as usize == set).partition(|&set| enclosed[set].is_solid());
@@ -121,7 +141,57 @@ fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
     Ok((piece_of.into_iter().map(|piece| part_of[piece as usize]).collect(), count))
 }
 
-/// Refuses more comparisons of pieces than take some seconds.
+/// Boxes in cells about as large as they are.
+fn grid(boxes: &[(DVec3, DVec3)]) -> Boxes {
+    let mean = boxes.iter().map(|(low, high)| low.distance(*high)).sum::<f64>() / boxes.len() as f64;
+    let ends =
+        boxes.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |ends, of| (ends.0.min(of.0), ends.1.max(of.1)));
+    Boxes::new(boxes.to_vec(), ends, mean.max(f64::MIN_POSITIVE))
+}
+
+/// Joins those of some pieces whose triangles cross or touch.
+fn join_touching(surface: &Surface, of: &[u32], is_near: &[bool], sets: &mut Sets) -> Result<(), FillError> {
+    let all = surface.triangles.iter().zip(of).filter(|(_, piece)| is_near[**piece as usize]);
+    let (triangles, of): (Vec<[DVec3; 3]>, Vec<u32>) = all.map(|(&of, &piece)| (surface.corners(of), piece)).unzip();
+    let boxes: Vec<_> = triangles.iter().map(|corners| bounds(corners)).collect();
+    let grid = grid(&boxes);
+    let shared = || grid.in_cells().filter(|all| all.iter().any(|&at| of[at as usize] != of[all[0] as usize]));
+    check(is_near.iter().filter(|near| **near).count(), shared().map(|all| all.len() * all.len() / 2).sum())?;
+    for all in shared() {
+        for (at, &one) in all.iter().enumerate() {
+            for &other in &all[at + 1..] {
+                let [a, b] = [one, other].map(|at| of[at as usize]);
+                let touch = || {
+                    let [one, other] = [one, other].map(|at| triangles[at as usize]);
+                    passes(one, other) || passes(other, one)
+                };
+                if a != b && sets.of(a) != sets.of(b) && grid.meet(other, boxes[one as usize]) && touch() {
+                    sets.join(a, b);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a side of one triangle passes another one or touches it, unless it is in its plane: other sides are not, then.
+fn passes(one: [DVec3; 3], [a, b, c]: [DVec3; 3]) -> bool {
+    let turn = |points: [DVec3; 4]| {
+        let [a, b, c, d] = points.map(|point| Coord3D { x: point.x, y: point.y, z: point.z });
+        orient3d(a, b, c, d)
+    };
+    let heights = one.map(|corner| turn([a, b, c, corner]));
+    [[0, 1], [1, 2], [2, 0]].into_iter().any(|[from, to]| {
+        let is_in_plane = heights[from] == 0.0 && heights[to] == 0.0;
+        if is_in_plane || heights[from] * heights[to] > 0.0 {
+            return false;
+        }
+        let turns = [[a, b], [b, c], [c, a]].map(|[start, end]| turn([one[from], one[to], start, end]));
+        turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
+    })
+}
+
+/// Refuses more comparisons than take some seconds.
 fn check(pieces: usize, pairs: usize) -> Result<(), FillError> {
     const MOST: usize = 1_000_000_000;
     if pairs <= MOST {

@@ -7,8 +7,9 @@
 
 use super::clip::{self, Piece};
 use super::cubes::bounded;
+use super::facet::Facet;
 use super::lattice::{CORNERS, Cell, Full, Lattice, corner};
-use super::sight::{Facet, Sight};
+use super::sight::Sight;
 use super::union::Tangle;
 use crate::Surface;
 use crate::edges::{EdgeUse, Sets, net};

@@ -205,6 +205,9 @@ impl<'l> Cutting<'l> {
                 }
             }
             let thicker = (LEAST - 0.5 * (along(farthest) - back)).max(least_thicker);
+            // Both ways together are at most an eighth of the side.
+            let moved = farthest.distance_squared(farthest.clamp(least, greatest));
+            let thicker = thicker.min(libm::sqrt(LEAST * LEAST - moved));
             let node = (farthest + thicker * direction).clamp(least, greatest);
             if along(node) - reached > 2.0 * BEYOND {
                 known.push(node);

@@ -1,44 +1,9 @@
 //! What sees what in a cell: which patches of the surface bound the same part of the inside.
 
-use super::clip::Polygon;
+use super::facet::Facet;
 use super::union::Tangle;
 use crate::edges::Sets;
 use glam::DVec3;
-
-/// A piece of the surface in a cell.
-pub(super) struct Facet {
-    /// The corners of its triangle, and their normal with any length.
-    pub(super) corners: [DVec3; 3],
-    pub(super) normal: DVec3,
-    pub(super) piece: Polygon,
-    /// A point in the middle of the piece, and the piece's area.
-    pub(super) middle: DVec3,
-    pub(super) area: f64,
-}
-
-impl Facet {
-    pub(super) fn new(corners: [DVec3; 3], low: DVec3) -> Self {
-        let piece = Polygon::new(corners).within(low);
-        let all = piece.corners();
-        let middle = match all.len() {
-            0 => corners[0].clamp(low, low + 1.0),
-            count => all.iter().sum::<DVec3>() / count as f64,
-        };
-        let area = if all.len() < 3 { 0.0 } else { piece.area().length() };
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        Self { corners, normal, piece, middle, area }
-    }
-
-    /// How far along a line the triangle is hit, in lengths of `along`.
-    pub(super) fn hit(&self, from: DVec3, along: DVec3) -> Option<f64> {
-        // T. Möller and B. Trumbore, 1997.
-        let across = self.normal.dot(along);
-        let [a, b, c] = self.corners.map(|corner| corner - from);
-        let [u, v, w] = [along.dot(b.cross(c)), along.dot(c.cross(a)), along.dot(a.cross(b))];
-        let is_in = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-        (is_in && across != 0.0).then(|| self.normal.dot(a) / across)
-    }
-}
 
 /// What sees what in a cell.
 pub(super) struct Sight<'f> {
@@ -63,8 +28,9 @@ pub(super) struct Seen {
 
 /// Hits nearer than this are where a line begins, in sides of the cell.
 const NEAR: f64 = 1e-9;
-/// Places of points along each side of a cell that look for patches. Those beside faces stand for them.
-const LOOKOUTS: [f64; 3] = [1e-3, 0.5, 1.0 - 1e-3];
+/// Places of points along each side of a cell that look for patches. Those beside faces stand for them. The second one is not in the
+/// middle, where points of symmetric surfaces are: round-off lets a line through a point pass between its triangles.
+const LOOKOUTS: [f64; 3] = [1e-3, 0.4871, 1.0 - 1e-3];
 /// Those beside the middles of faces: low and high along x, y and z.
 const FACES: [usize; 6] = [12, 14, 10, 16, 4, 22];
 /// From so many pieces of a patch it is looked inwards.

@@ -11,26 +11,44 @@ use super::tighten::{cosines, tightened};
 use super::{FillError, Filled, embed};
 use crate::{Flaws, Surface};
 use glam::{DVec3, IVec3};
+use std::cell::Cell;
 
 /// A point of the lattice is moved to a cut of one of its edges that is nearer than this part of the edge: for edges along the axes
 /// and for the shorter others. Angles are bounded as stated for any cuts and moves of the corners of a tetrahedron, as a search
 /// through all showed. The paper has 0.24999 and 0.41189: scans were met where those leave less than 10.6°.
 const NEAR: [f64; 2] = [0.285, 0.399];
 
-pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
+/// A part that is too small or too thin for its elements is tried again with sides shorter by this factor, down to the least one.
+const SHORTER: f64 = 0.8;
+const SHORTEST: f64 = 0.5;
+
+/// Fills a surface with tetrahedra of a lattice with this side, or a shorter one if nodes would stay far outside.
+pub(super) fn fill(surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
+    let mut shorter = side;
+    while shorter >= SHORTEST * side {
+        if let Some(filled) = of_lattice(surface.clone(), flaws, shorter, most)? {
+            return Ok(filled);
+        }
+        shorter *= SHORTER;
+    }
+    let message = format!("is so thin that tetrahedra of side {side} would stand far outside of it");
+    Err(FillError::new(message, "use a smaller side, or fill it with cubes"))
+}
+
+/// The elements of a lattice with this side; `None` if nodes of them stay far outside.
+fn of_lattice(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Option<Filled>, FillError> {
     let lattice = Lattice::around(&mut surface, side, true, most)?;
     let truly_inside = lattice.inside();
+    let is_far = Cell::new(false);
     let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |wide, is_bold, _| {
         let is_inside: Vec<bool> = truly_inside.iter().zip(wide).map(|(inside, wide)| *inside || *wide > 0).collect();
         let cuts = lattice.cuts(&is_inside, |point| wide[point] > 0 && !truly_inside[point]);
         let found = Stuffing::new(&lattice, &is_inside, cuts).draft(wide, most);
         let mut draft = found.map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))?;
-        if draft.is_wide.contains(&true) {
-            tightened(&mut draft, &surface, &lattice, is_bold);
-        }
+        is_far.set(draft.is_wide.contains(&true) && tightened(&mut draft, &surface, &lattice, is_bold));
         Ok(draft)
     })?;
-    Ok(Filled { cage, surface, weights, flaws })
+    Ok((!is_far.get()).then_some(Filled { cage, surface, weights, flaws }))
 }
 
 /// On which side of the surface a point of the lattice lies.

@@ -82,13 +82,14 @@ impl<'s> Near<'s> {
 }
 
 /// Draws the nodes of wide tetrahedra to the surface as far as angles allow, and leaves out those that are beside it. If `is_bold`,
-/// those whose nodes stay far from it are left out, too.
-pub(super) fn tightened(draft: &mut Draft, surface: &Surface, lattice: &Lattice, is_bold: bool) {
+/// those whose nodes stay far from it are left out, too. Returns whether some are left.
+pub(super) fn tightened(draft: &mut Draft, surface: &Surface, lattice: &Lattice, is_bold: bool) -> bool {
     let near = Near::new(surface, lattice);
     near.leave_out(draft, &[]);
     let far = near.draw(draft);
     draft.is_bold = is_bold && !far.is_empty();
     near.leave_out(draft, if is_bold { &far } else { &[] });
+    draft.cage.elements.indices().iter().any(|&node| far.binary_search(&(node as usize)).is_ok())
 }
 
 impl Near<'_> {

@@ -3,14 +3,11 @@
 //! Inside, the winding number is above 0. A shell in another one has it on both of its sides and bounds nothing. Where shells cross,
 //! their triangles are divided, so that each fragment has one winding number on either side.
 
-use super::range;
-use super::sight::Facet;
+use super::facet::{Facet, overlap};
 use crate::inside::Inside;
 use glam::DVec3;
 use localshape_sim::geometry::bounds;
 
-/// The distance from a facet to the points on its sides that are asked whether they are inside, in sides of the cell.
-const BESIDE: f64 = 1e-7;
 /// A facet is divided into no more fragments by further facets: hundreds that cross in one cell are no shells.
 const MOST: usize = 256;
 
@@ -94,77 +91,4 @@ fn near(facets: &[Facet], boxes: &[(DVec3, DVec3)], patch_of: &[u32], folded: bo
         (0..facets.len()).filter(meets).collect()
     };
     (0..facets.len()).map(near).collect()
-}
-
-/// Whether boxes meet.
-fn overlap(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
-    (one.0 - BESIDE).cmple(other.1).all() && (other.0 - BESIDE).cmple(one.1).all()
-}
-
-impl Facet {
-    /// How far a point is in front of the facet's plane.
-    fn height(&self, point: DVec3) -> f64 {
-        self.normal.dot(point - self.corners[0]) / self.normal.length()
-    }
-
-    /// The least and the greatest height of points.
-    fn heights(&self, points: &[DVec3]) -> (f64, f64) {
-        range(points.iter().map(|&point| self.height(point)))
-    }
-
-    /// Whether each of two facets meets the plane of the other.
-    fn meets(&self, other: &Self) -> bool {
-        [(self, other), (other, self)].into_iter().all(|(one, other)| {
-            let (low, high) = one.heights(other.piece.corners());
-            low <= BESIDE && high >= -BESIDE
-        })
-    }
-
-    /// Whether two facets cross: a side of one passes the other.
-    fn crosses(&self, other: &Self) -> bool {
-        [(self, other), (other, self)].into_iter().any(|(one, other)| {
-            let all = one.piece.corners();
-            (0..all.len()).any(|at| {
-                let along = all[(at + 1) % all.len()] - all[at];
-                other.hit(all[at], along).is_some_and(|hit| (0.0..=1.0).contains(&hit))
-            })
-        })
-    }
-
-    /// The two parts of a polygon in front of the facet's plane and behind it, or all of it if it does not reach this facet in its box.
-    fn divide(&self, polygon: Vec<DVec3>, own: (DVec3, DVec3)) -> Vec<Vec<DVec3>> {
-        let (low, high) = self.heights(&polygon);
-        if low > -BESIDE || high < BESIDE || !overlap(bounds(&polygon), own) {
-            return vec![polygon];
-        }
-        let mut sides = vec![Vec::new(), Vec::new()];
-        for (at, &from) in polygon.iter().enumerate() {
-            let to = polygon[(at + 1) % polygon.len()];
-            let [below, above] = [from, to].map(|point| self.height(point));
-            sides[usize::from(below < 0.0)].push(from);
-            if below * above < 0.0 {
-                let cut = from + (to - from) * (below / (below - above));
-                sides.iter_mut().for_each(|side| side.push(cut));
-            } else if below == 0.0 {
-                sides[1].push(from);
-            }
-        }
-        sides
-    }
-
-    /// Whether the facet bounds the inside in its middle.
-    pub(super) fn bounds(&self, inside: &Inside) -> bool {
-        self.area == 0.0 || self.bounding(inside, self.middle) != 0.0
-    }
-
-    /// How much of the facet bounds the inside at a point of it.
-    fn bounding(&self, inside: &Inside, at: DVec3) -> f64 {
-        let out = self.normal * (BESIDE / self.normal.length());
-        let [front, behind] = [at + out, at - out].map(|point| inside.around(point));
-        match behind - front {
-            // A wall between two parts bounds both.
-            0 => 1.0,
-            several => f64::from(i32::from(behind > 0) - i32::from(front > 0)) / f64::from(several),
-        }
-    }
 }

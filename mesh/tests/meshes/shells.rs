@@ -2,7 +2,7 @@
 
 use crate::common::{ball, block, ring, together};
 use glam::{DQuat, DVec3};
-use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
+use localshape_mesh::{Cage, Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::bounds;
 
 const MOST: usize = 1_000_000;
@@ -27,10 +27,8 @@ fn slanted(surface: &Surface) -> Surface {
     Surface { points: surface.points.iter().map(|&point| turn * point).collect(), ..surface.clone() }
 }
 
-/// What is filled of each body whose elements share nodes (m³), in rising order.
-fn volumes(filled: &Filled) -> Vec<f64> {
-    let cage = &filled.cage;
-    // The lowest node that each node hangs together with.
+/// The lowest node that each node hangs together with.
+fn bodies(cage: &Cage) -> Vec<usize> {
     let mut body_of: Vec<usize> = (0..cage.nodes.len()).collect();
     let mut changed = true;
     while changed {
@@ -42,12 +40,23 @@ fn volumes(filled: &Filled) -> Vec<f64> {
             }
         }
     }
+    body_of
+}
+
+/// What is filled of each body whose elements share nodes (m³), in rising order. Elements are cubes, or nodes have their volumes.
+fn volumes(filled: &Filled) -> Vec<f64> {
+    let cage = &filled.cage;
+    let body_of = bodies(cage);
     let mut volumes = vec![0.0; cage.nodes.len()];
-    for (element, nodes) in cage.elements.iter().enumerate() {
-        let places: Vec<_> = nodes.iter().map(|&node| cage.nodes[node as usize]).collect();
-        let (low, high) = bounds(&places);
-        let part = cage.filled.as_ref().map_or(1.0, |filled| filled[element]);
-        volumes[body_of[nodes[0] as usize]] += part * (high - low).element_product();
+    if let (Some(own), true) = (&cage.volumes, cage.elements.iter().any(|nodes| nodes.len() != 8)) {
+        own.iter().zip(&body_of).for_each(|(own, &body)| volumes[body] += own);
+    } else {
+        for (element, nodes) in cage.elements.iter().enumerate() {
+            let places: Vec<_> = nodes.iter().map(|&node| cage.nodes[node as usize]).collect();
+            let (low, high) = bounds(&places);
+            let part = cage.filled.as_ref().map_or(1.0, |filled| filled[element]);
+            volumes[body_of[nodes[0] as usize]] += part * (high - low).element_product();
+        }
     }
     volumes.retain(|&volume| volume > 0.0);
     volumes.sort_by(f64::total_cmp);
@@ -150,6 +159,51 @@ fn shells_in_each_other_are_filled_once_and_cavities_are_not() {
     // The lens that two balls at a distance d share: π (4 + d) (2 − d)² / 12, of 40 corners around a little less.
     let lens = std::f64::consts::PI * 4.9 * 1.1 * 1.1 / 12.0;
     assert!((both.cage.overlap / lens - 1.0).abs() < 0.03, "{} {lens}", both.cage.overlap);
+}
+
+/// However near they are, and also where their boxes meet.
+#[test]
+fn pieces_that_do_not_touch_stay_apart_with_every_filling() {
+    let boxes = |gap: f64| {
+        let far = DVec3::new(0.6 + gap, 0.0, 0.0);
+        slanted(&together(&[
+            block(DVec3::ZERO, DVec3::new(0.6, 0.7, 0.4)),
+            block(far, far + DVec3::new(0.6, 0.75, 0.4)),
+        ]))
+    };
+    let ring = ring(1.0, 0.2, 60).mended().0;
+    let lying = |along: f64| {
+        let points = ring.points.iter().map(|at| DVec3::new(at.x + along, -at.z, at.y)).collect();
+        together(&[ring.clone(), Surface { points, ..ring.clone() }])
+    };
+    let [core, cavity, outside] = [0.7, 0.8, 1.0].map(|radius| ball(DVec3::ZERO, radius, 24).mended().0);
+    let volume = |surface: &Surface| surface.measures().volume;
+    let within = [volume(&core), volume(&outside) - volume(&cavity)];
+    let loose = slanted(&together(&[outside, turned(cavity), core]));
+    let of_boxes = [0.168, 0.18];
+    let of_rings = [volume(&ring); 2];
+    for (surface, expected) in [
+        (boxes(0.3), of_boxes),
+        (boxes(0.05), of_boxes),
+        (lying(0.7), of_rings),
+        (lying(1.55), of_rings),
+        (loose, within),
+    ] {
+        let (low, high) = bounds(&surface.points);
+        for cells in [5.0, 10.0, 17.0] {
+            let side = (high - low).max_element() / cells;
+            for with in
+                [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }]
+            {
+                let found = volumes(&fill(&surface, with, MOST).unwrap());
+                let is_right = |(one, other): (&f64, &f64)| (one - other).abs() < 2e-5 * side;
+                assert!(
+                    found.len() == 2 && found.iter().zip(&expected).all(is_right),
+                    "{found:?} in place of {expected:?}, {with:?}"
+                );
+            }
+        }
+    }
 }
 
 /// A hole in one piece does not join it to another, and what encloses nothing by itself goes with the nearest.
