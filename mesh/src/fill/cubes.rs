@@ -4,7 +4,7 @@ use super::clip::{self, Piece};
 use super::draft::Nodes;
 use super::graded::{self, Graded};
 use super::lattice::{CORNERS, Cell, JOINED, Lattice, corner, too_many};
-use super::parts::{Parted, Parts, Patches, Scene};
+use super::parts::{LEAST, Parted, Parts, Patches, Scene, bounded};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
@@ -12,8 +12,6 @@ use glam::DVec3;
 use localshape_sim::{IndexLists, Weights};
 use rayon::prelude::*;
 
-/// An element is filled at least by this part, lest its numbers come near to the smallest.
-const LEAST: f64 = 1e-9;
 /// Points along each side of a cell at which it is tried whether they are inside, where a surface is open.
 const SAMPLES: usize = 4;
 
@@ -142,11 +140,6 @@ fn check_effort(scene: &Scene, flaws: &Flaws, capped: &[Piece]) -> Result<(), Fi
     let edges = flaws.boundary + flaws.inconsistent;
     let message = format!("is open at {edges} edges, too many to tell how much of some {tried} cells is inside");
     Err(FillError::new(message, "close it in the program that made it, or use a larger side"))
-}
-
-/// A part of a cell or an element: all, if it differs from that by round-off, and at least [`LEAST`].
-pub(super) fn bounded(part: f64) -> f64 {
-    if part > 1.0 - 1e-12 { 1.0 } else { part.max(LEAST) }
 }
 
 fn row_cells<'s>(scene: &Scene<'s>, row: usize, capped: &'s [Piece]) -> Vec<(Parted, Option<Patches<'s>>)> {

@@ -1,11 +1,15 @@
 //! Where a surface cuts the edges of a lattice.
 
 use super::parts::{Parted, Scene};
-use super::{FillError, clip, cubes, embed, lattice};
+use super::{FillError, clip, cubes, lattice};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::{DVec2, DVec3, IVec3};
 use rayon::prelude::*;
+
+/// A point outside of all elements follows the nearest one if it is at most so many sides away: beyond, it would only show how
+/// that element turns.
+pub(super) const FAR: f64 = 0.75;
 
 /// The edges of a body-centred lattice: three along the axes between neighbours of one kind, four between a corner and a middle.
 /// Each is counted from the end with the lower x, or the lower coordinate along its axis; in halves of the side.
@@ -101,7 +105,7 @@ impl Lattice {
 
     /// Points of the surface farther than this from all elements, in sides, ask at first for more: cubes have nodes for them.
     pub(super) fn far(&self) -> f64 {
-        if self.has_middles { embed::FAR } else { 0.3 }
+        if self.has_middles { FAR } else { 0.3 }
     }
 
     /// How often places can be marked to some effect by [`Self::touch`].

@@ -5,7 +5,7 @@
 //! each tetrahedron, equal on both sides of a shared face, and reproduce affine maps. Elements have to be seen whole from the mean
 //! of their nodes, as convex ones are.
 
-use super::cuts::Lattice;
+use super::cuts::{FAR, Lattice};
 use super::draft::{Draft, Nodes};
 use crate::boxes::Boxes;
 use crate::edges::{Sets, pieces};
@@ -15,10 +15,6 @@ use localshape_sim::geometry::{around, bounds};
 use localshape_sim::{Body, ElementKind, IndexLists, Solids, Weights};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-
-/// A point outside of all elements follows the nearest one if it is at most so many sides away: beyond, it would only show how
-/// that element turns.
-pub(super) const FAR: f64 = 0.75;
 
 /// Elements farther away than so many sides have nothing to do with a point.
 const VERY_FAR: f64 = 2.0;

@@ -6,7 +6,6 @@
 //! nodes where the same part passes their common face.
 
 use super::clip::{self, Piece};
-use super::cubes::bounded;
 use super::facet::Facet;
 use super::lattice::{CORNERS, Cell, Full, Lattice, corner};
 use super::sight::Sight;
@@ -15,6 +14,9 @@ use crate::Surface;
 use crate::edges::{EdgeUse, Sets, net};
 use crate::inside::Inside;
 use glam::DVec3;
+
+/// An element is filled at least by this part, lest its numbers come near to the smallest.
+pub(super) const LEAST: f64 = 1e-9;
 
 /// Volumes below this are round-off, in cells.
 const CLOSE: f64 = 1e-9;
@@ -118,6 +120,11 @@ impl Edges {
         }
         Self { of, open }
     }
+}
+
+/// A part of a cell or an element: all, if it differs from that by round-off, and at least [`LEAST`].
+pub(super) fn bounded(part: f64) -> f64 {
+    if part > 1.0 - 1e-12 { 1.0 } else { part.max(LEAST) }
 }
 
 /// Whether more than a point of a line is in a box.

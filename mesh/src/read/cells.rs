@@ -1,6 +1,6 @@
 //! Points and cells as a file lists them, and the mesh that they make.
 
-use super::order::Parts;
+use super::order::{Parts, along};
 use super::polygon::Triangulation;
 use super::source::Source;
 use super::{Format, Limits, Mesh, ReadError, Surface, Volume};
@@ -74,15 +74,6 @@ pub struct Cells {
     pub copies: IndexLists,
     /// What is left out of the file or not read, each as the predicate of a sentence about it.
     pub notes: Vec<String>,
-}
-
-/// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
-/// [`Solids::Ordered`]. It is its own inverse.
-const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-
-/// The corners of a hexahedron that a file lists around one side and then around the other, x fastest, then y, then z.
-pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
-    AROUND.map(|place| corners[place])
 }
 
 /// What VTK tells of a point or a cell.
@@ -504,8 +495,15 @@ impl Cells {
         Ok(triangles)
     }
 
+    /// A volume of ordered cells.
+    fn ordered(mut self, parts: Parts, dimension: Dimension, solids: Solids) -> Result<Volume, ReadError> {
+        let (lists, turned, note) = parts.finished(&self.corners, &self.points)?;
+        self.notes.extend(note);
+        Ok(self.volume(dimension, solids, &lists, turned))
+    }
+
     /// A volume of some lists of points, with only their points.
-    pub(super) fn volume(self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
+    fn volume(self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
         let used = Used::new(self.points.len(), lists.indices());
         let renamed: Vec<u32> = lists.indices().iter().map(|&corner| used.new[corner as usize]).collect();
         let cells = (0..lists.len()).map(|at| &renamed[lists.range(at)]).collect();
@@ -529,7 +527,7 @@ impl Cells {
             let mut cell = corners.to_vec();
             parts.add(at, element, &mut cell, &self.points);
         }
-        parts.volume(self, solids)
+        self.ordered(parts, Dimension::Space, solids)
     }
 
     fn polygons(mut self) -> Result<Volume, ReadError> {
@@ -543,7 +541,7 @@ impl Cells {
             }
             parts.add(at, ElementKind::Polygon, &mut cell, &self.points);
         }
-        parts.volume(self, Solids::Ordered)
+        self.ordered(parts, Dimension::Plane, Solids::Ordered)
     }
 }
 

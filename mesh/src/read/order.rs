@@ -1,14 +1,17 @@
 //! Cells of files in the order of elements.
 
-use super::cells::{Cells, along};
-use super::{ReadError, Volume};
+use super::ReadError;
 use glam::DVec3;
 use localshape_sim::geometry::volume_by_faces;
-use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
+use localshape_sim::{Dimension, ElementKind, IndexLists};
 use std::collections::HashSet;
 
 /// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
 const FLAT: f64 = 1e-12;
+
+/// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
+/// [`localshape_sim::Solids::Ordered`]. It is its own inverse.
+const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// The elements of a volume.
 pub(super) struct Parts {
@@ -84,25 +87,39 @@ impl Parts {
         true
     }
 
-    pub(super) fn volume(self, mut cells: Cells, solids: Solids) -> Result<Volume, ReadError> {
+    /// The elements, how many were turned over, and what is told of those that are left out.
+    ///
+    /// # Errors
+    /// If all are left out.
+    pub(super) fn finished(
+        self,
+        cells: &IndexLists,
+        points: &[DVec3],
+    ) -> Result<(IndexLists, usize, Option<String>), ReadError> {
         let (flat, first) = self.flat;
-        if flat > 0 {
-            let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
-            // Files number points and cells in ways of their own.
-            let places = cells.corners[first].iter().map(|&corner| cells.points[corner as usize].to_array());
-            let shown: Vec<String> = places.take(4).map(|place| format!("{place:?}")).collect();
-            let corners = shown.join(", ");
-            if self.cells.is_empty() {
-                let message = format!("has only cells without {what}: the first has corners at {corners}");
-                return Err(ReadError::new(message, "mesh the object again"));
-            }
-            cells.notes.push(match flat {
-                1 => format!("has a cell without {what}, which is left out: it has corners at {corners}"),
-                _ => format!("has {flat} cells without {what}, which are left out: the first has corners at {corners}"),
-            });
+        if flat == 0 {
+            return Ok((self.cells, self.turned, None));
         }
-        Ok(cells.volume(self.dimension, solids, &self.cells, self.turned))
+        let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
+        // Files number points and cells in ways of their own.
+        let places = cells[first].iter().map(|&corner| points[corner as usize].to_array());
+        let shown: Vec<String> = places.take(4).map(|place| format!("{place:?}")).collect();
+        let corners = shown.join(", ");
+        if self.cells.is_empty() {
+            let message = format!("has only cells without {what}: the first has corners at {corners}");
+            return Err(ReadError::new(message, "mesh the object again"));
+        }
+        let note = match flat {
+            1 => format!("has a cell without {what}, which is left out: it has corners at {corners}"),
+            _ => format!("has {flat} cells without {what}, which are left out: the first has corners at {corners}"),
+        };
+        Ok((self.cells, self.turned, Some(note)))
     }
+}
+
+/// The corners of a hexahedron that a file lists around one side and then around the other, x fastest, then y, then z.
+pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
+    AROUND.map(|place| corners[place])
 }
 
 fn turn(kind: ElementKind, cell: &mut [u32]) {
