@@ -10,6 +10,7 @@ mod impacts;
 mod rest;
 mod shapes;
 mod slopes;
+mod solids;
 
 use crate::folder::Notes;
 use crate::page::{Contents, Line, Page, Plot};
@@ -27,7 +28,7 @@ pub(crate) struct Contact {
     pub(crate) refined: u32,
     /// Periods of a bar that bounces.
     pub(crate) periods: u32,
-    /// Starts of each of the shapes that fall on each other.
+    /// Starts of each of the sharp shapes that fall on each other.
     pub(crate) starts: u64,
 }
 
