@@ -3,12 +3,10 @@
 use super::candidates::Candidates;
 use super::extent::{Extent, near, sweep};
 use super::features::{Kind, Placed};
-use super::places::Places;
 use super::rule::Law;
-use super::shown::Shown;
+use super::shown::{Seen, Shown};
 use super::surface::Surface;
 use super::touches::{Sides, Touches};
-use glam::DVec3;
 
 /// Two surfaces that may meet, or one with itself.
 #[derive(Clone, Debug)]
@@ -23,24 +21,6 @@ pub(super) struct Pair {
     candidates: [Candidates; 3],
     /// What touches in this step.
     pub(super) touches: Touches,
-}
-
-/// What is known of a step when pairs are looked at.
-#[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
-    pub(super) surfaces: &'a [Surface],
-    /// Nodes at rest (m), for bodies that meet themselves.
-    pub(super) rest: Places<'a>,
-    /// The surfaces at the start of the step; of those in pairs.
-    pub(super) start: &'a [Shown],
-    /// See [`Touch::drag`](super::rule::Touch::drag): for a surface, a point on its axis (m), and the way from there to its surface (m).
-    pub(super) drag: &'a (dyn Fn(usize, DVec3, DVec3) -> DVec3 + Sync),
-}
-
-impl<'a> Seen<'a> {
-    fn placed(&self, surface: usize) -> Placed<'a> {
-        Placed { surface: &self.surfaces[surface], at: &self.start[surface].points }
-    }
 }
 
 impl Pair {

@@ -1,9 +1,9 @@
 //! Where bodies touch each other and obstacles, for pictures. It depends on positions alone.
 
 use super::ground::Grounds;
-use super::pair::{Pair, Seen};
+use super::pair::Pair;
 use super::places::{ContactPoint, Places, SLACK};
-use super::shown::Shown;
+use super::shown::{Seen, Shown};
 use super::stage::Stage;
 use crate::motion::Interval;
 use glam::DVec3;

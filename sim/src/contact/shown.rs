@@ -1,5 +1,6 @@
-//! A surface at the start of a step: the places of its points, and which of its edges are flat.
+//! Surfaces at the start of a step: the places of their points, and which of their edges are flat.
 
+use super::features::Placed;
 use super::places::Places;
 use super::surface::Surface;
 use glam::DVec3;
@@ -51,6 +52,24 @@ impl Shown {
     /// The way of its points (m) for which an edge stays flat; `None` if it is not.
     pub(super) fn stays_flat(&self, edge: u32) -> Option<f64> {
         self.is_flat[edge as usize].then(|| self.wakes[edge as usize] - self.way)
+    }
+}
+
+/// What is known of a step when pairs are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub(super) surfaces: &'a [Surface],
+    /// Nodes at rest (m), for bodies that meet themselves.
+    pub(super) rest: Places<'a>,
+    /// The surfaces at the start of the step; of those in pairs.
+    pub(super) start: &'a [Shown],
+    /// See [`Touch::drag`](super::rule::Touch::drag): for a surface, a point on its axis (m), and the way from there to its surface (m).
+    pub(super) drag: &'a (dyn Fn(usize, DVec3, DVec3) -> DVec3 + Sync),
+}
+
+impl<'a> Seen<'a> {
+    pub(super) fn placed(&self, surface: usize) -> Placed<'a> {
+        Placed { surface: &self.surfaces[surface], at: &self.start[surface].points }
     }
 }
 

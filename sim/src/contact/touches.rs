@@ -1,8 +1,8 @@
 //! What touches in a step, with what the rule needs to know of it.
 
 use super::features::{Closest, Kind};
-use super::pair::Seen;
 use super::rule::{Term, Touch};
+use super::shown::Seen;
 use super::surface::Surface;
 
 /// What touches in a step: points with facets, and edges, each in the order of features.
