@@ -265,3 +265,15 @@ fn points_of_contact_are_where_surfaces_touch() {
         assert!(points.len() == count && points.iter().all(is_between), "{times}: {points:?}");
     }
 }
+
+/// Two bodies that cross share the same crossings, and each has them among its own diagnostics.
+#[test]
+fn crossings_belong_to_both_bodies() {
+    let body = block([1; 3]);
+    let placed = [DVec3::ZERO, DVec3::new(0.5, 0.3, 0.2) * SIDE].map(|at| (Arc::clone(&body), still(at)));
+    let world = by(Integrator::SemiImplicitEuler, Kernel::Fast, &placed, 1e3, 0.02, with_contacts(0.0, 0.0));
+    let [(sides, count)] = &world.crossings().expect("surfaces")[..] else { panic!("one pair") };
+    assert!(*sides == [Side::Body(0), Side::Body(1)] && *count > 4);
+    let (all, of_each) = world.diagnostics_by_body(&[Diagnostic::Crossings]);
+    assert_eq!([all.crossings, of_each[0].crossings, of_each[1].crossings], [*count as f64; 3]);
+}

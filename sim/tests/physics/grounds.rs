@@ -127,3 +127,36 @@ fn a_plate_lifts_the_surface_and_friction_holds_it() {
     // Elastic vibrations lift it now and then.
     assert!(held.abs() < 0.01 * expected, "{held}");
 }
+
+/// Wherever it starts, its surface stops at the distance that it keeps: no point comes nearer, also in the step after which its list of points is
+/// made anew.
+#[test]
+fn the_surface_stops_wherever_it_starts() {
+    for start in 0..40 {
+        let height = HALF + THICKNESS + 0.06 + 5e-4 * f64::from(start);
+        let plate = half_space(DVec3::Y, 0.0, Motion::Still);
+        // This code asks for points from the first step on.
+        let mut world = world(DVec3::Y * height, DVec3::ZERO, plate, Some(Contacts::default()), Kernel::Reference);
+        let speed = vec![DVec3::Y * -4.0; 27];
+        world.set_nodes(world.state().position.clone(), speed).expect("speeds");
+        let mut least = f64::INFINITY;
+        for _ in 0..28 {
+            world.advance(1);
+            least = least.min(lowest(&world, DVec3::Y)[0]);
+        }
+        // In a step it goes once more as far.
+        assert!((0.9 * THICKNESS..2.4 * THICKNESS).contains(&least), "{height}: {least} {THICKNESS}");
+    }
+}
+
+#[test]
+fn a_plate_that_moves_aside_takes_the_surface_along() {
+    let key = |time: f64| Key { time, offset: Offset { shift: DVec3::X * (0.5 * time), rotation: DVec3::ZERO } };
+    let motion = Motion::Keys { keys: vec![key(0.0), key(10.0)], ease: Ease::Linear, repeat: false };
+    let plate = half_space(DVec3::Y, 0.5, motion);
+    let at = DVec3::Y * (HALF + THICKNESS);
+    let mut carried = world(at, DVec3::Y * -10.0, plate, Some(Contacts::default()), Kernel::Fast);
+    carried.advance((0.5 / (0.02 * std::f64::consts::TAU / 2e4_f64.sqrt())) as u64);
+    let speed = carried.state().velocity.iter().map(|speed| speed.x).sum::<f64>() / 27.0;
+    assert!((speed - 0.5).abs() < 0.05, "{speed}");
+}

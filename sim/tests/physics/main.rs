@@ -27,6 +27,7 @@ mod loads;
 mod masses;
 #[cfg(feature = "scene")]
 mod material;
+mod meeting;
 #[cfg(feature = "scene")]
 mod metric;
 mod overlaps;
@@ -42,6 +43,7 @@ mod state;
 mod support;
 mod surfaces;
 mod threads;
+mod touching;
 mod xpbd;
 
 use localshape_sim::Integrator;
