@@ -397,7 +397,7 @@ diagnostics! { facts:
 
 impl Diagnostic {
     /// Whether it tells of forces of contact or of constraints, and is NaN unless a world is [asked for
-    /// them](super::World::keep_contact_forces).
+    /// them](super::World::keep_reactions).
     pub fn is_of_forces(self) -> bool {
         matches!(self, Self::ContactForce | Self::ContactTorque | Self::HoldForce | Self::HoldTorque)
     }

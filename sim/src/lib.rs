@@ -70,8 +70,8 @@ pub use assembly::Assembly;
 pub use body::{Body, BodyError, NewBody};
 pub use carried::{Carried, Weights};
 pub use contact::{
-    BodyContact, Contact, ContactForce, ContactPoint, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed,
-    Shape, Side, Source, Surfaces,
+    BodyContact, Contact, ContactPoint, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed, Reaction, Shape,
+    Side, Source, Surfaces,
 };
 pub use crew::Crew;
 pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};

@@ -1,6 +1,6 @@
 //! A [`Snapshot`] of a run: the view of a simulation for drawing, diagnostics and files.
 
-use super::contact::{ContactForce, ContactPoint};
+use super::contact::{ContactPoint, Reaction};
 use super::diagnostics::Diagnostics;
 use super::integrate::Unsolved;
 use super::placement::Placement;
@@ -36,8 +36,8 @@ pub struct Snapshot {
     /// The same of each body.
     pub of_bodies: Vec<Diagnostics>,
     /// The mean forces of contact in the last interval that has ended; empty before, and in a world that
-    /// [is not asked for them](super::World::keep_contact_forces).
-    pub contact_forces: Vec<ContactForce>,
+    /// [is not asked for them](super::World::keep_reactions).
+    pub reactions: Vec<Reaction>,
     /// Where bodies touch now, in a world that is asked for the forces.
     pub contact_points: Vec<ContactPoint>,
     /// Whether the run has diverged.

@@ -67,7 +67,7 @@ pub struct Memory {
     pub constraints: Vec<f64>,
     /// Of the integrator; empty if it has to start anew.
     pub integrator: Vec<f64>,
-    /// Of contact forces, if they are kept ([`World::keep_contact_forces`](super::World::keep_contact_forces)): sums and means.
+    /// Of forces of contact and of constraints, if they are kept ([`World::keep_reactions`](super::World::keep_reactions)): sums and means.
     pub contact: Vec<f64>,
     /// Of forces from outside, if there are any: their work so far (J) on each part, and the time (s) and the positions (m) of their nodes when
     /// it was added up.

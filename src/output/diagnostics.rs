@@ -7,7 +7,7 @@ use crate::runner::TableRow;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::{Frame, RunFrame};
 use crate::scene::{ALL_BODIES, Run, Scene};
-use crate::sim::{ContactForce, Diagnostic, Diagnostics, Snapshot, Source, Status, Value};
+use crate::sim::{Diagnostic, Diagnostics, Reaction, Snapshot, Source, Status, Value};
 use glam::DVec3;
 use std::fs;
 use std::io;
@@ -70,7 +70,7 @@ impl<'a> DiagnosticsWriter<'a> {
         for (place, RunFrame { run, snapshot, .. }) in frame.runs.iter().enumerate() {
             let run = &self.scene.runs[*run];
             let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
-            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], forces: &[ContactForce]| {
+            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], forces: &[Reaction]| {
                 let exerted = Exerted { scene: self.scene, run: Some(run), forces };
                 let own = (0..).zip(of_bodies).zip(&bodies).map(|((at, one), &body)| (Some(at), body, one));
                 rows.extend(std::iter::once((None, ALL_BODIES, all)).chain(own).map(|(at, body, one)| {
@@ -81,11 +81,11 @@ impl<'a> DiagnosticsWriter<'a> {
             };
             // The step of a frame has the row of the frame.
             let between = between.get(place).into_iter().flatten().filter(|row| row.time < snapshot.time);
-            for TableRow { time, all, of_bodies, contact_forces } in between {
-                add(None, *time, Status::Ok, all, of_bodies, contact_forces);
+            for TableRow { time, all, of_bodies, reactions } in between {
+                add(None, *time, Status::Ok, all, of_bodies, reactions);
             }
-            let Snapshot { time, status, diagnostics, of_bodies, contact_forces, .. } = snapshot;
-            add(Some(frame.index), *time, *status, diagnostics, of_bodies, contact_forces);
+            let Snapshot { time, status, diagnostics, of_bodies, reactions, .. } = snapshot;
+            add(Some(frame.index), *time, *status, diagnostics, of_bodies, reactions);
         }
         self.append(&rows_as_csv(rows.into_iter().map(|row| row.into_iter().map(|(_, cell)| cell))))
     }
@@ -113,7 +113,7 @@ struct Exerted<'a> {
     /// `None` for headings.
     run: Option<&'a Run>,
     /// Empty if nothing is known.
-    forces: &'a [ContactForce],
+    forces: &'a [Reaction],
 }
 
 impl Exerted<'_> {

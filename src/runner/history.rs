@@ -5,7 +5,7 @@
 use crate::look::CameraBoxes;
 use crate::scene::{Run, Scene};
 use crate::sim::geometry;
-use crate::sim::{ContactForce, Diagnostics, Divergence, Moment, Shape, World};
+use crate::sim::{Diagnostics, Divergence, Moment, Reaction, Shape, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -95,7 +95,7 @@ pub(crate) struct TableRow {
     pub(crate) all: Diagnostics,
     pub(crate) of_bodies: Vec<Diagnostics>,
     /// The mean forces of contact, if they are kept and known.
-    pub(crate) contact_forces: Vec<ContactForce>,
+    pub(crate) reactions: Vec<Reaction>,
 }
 
 /// For each obstacle of a scene the box around all nodes that have been near it (m), relative to the obstacle at the

@@ -377,8 +377,8 @@ impl Running {
         let (all, of_bodies) = world.diagnostics_by_body(if row.is_some() { Diagnostic::ALL } else { wanted });
         if let Some(rows) = row {
             let time = steps as f64 * self.step;
-            let contact_forces = world.contact_forces().unwrap_or_default();
-            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone(), contact_forces });
+            let reactions = world.reactions().unwrap_or_default();
+            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone(), reactions });
         }
         if is_noted {
             self.note(scene, steps, (all, of_bodies));
@@ -457,7 +457,7 @@ impl Scene {
 
     /// Keeps the forces of contact, over the intervals between rows of `diagnostics.csv`, or else between frames.
     fn keep_contact(&self, world: &mut World) {
-        world.keep_contact_forces(self.every.map_or(self.moment(1), Moment::at));
+        world.keep_reactions(self.every.map_or(self.moment(1), Moment::at));
     }
 }
 

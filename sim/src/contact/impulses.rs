@@ -33,7 +33,7 @@ impl From<Side> for Source {
 /// The mean force that an obstacle, a kinematic constraint or another body exerts on a body, over an interval of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
-pub struct ContactForce {
+pub struct Reaction {
     /// What exerts it.
     pub from: Source,
     /// The number of the body that it acts on.
@@ -206,7 +206,7 @@ impl Impulses {
     }
 
     /// The mean forces in the last interval that has ended, by numbers from [`Self::store`]; `None` before the first end.
-    pub(crate) fn forces(&self, numbers: &[f64]) -> Option<Vec<ContactForce>> {
+    pub(crate) fn forces(&self, numbers: &[f64]) -> Option<Vec<Reaction>> {
         let (&[_, known], rest) = numbers.split_first_chunk::<HEAD>()?;
         let means = &rest[rest.len() / 2..];
         let around = (0..self.obstacles).map(Source::Obstacle).chain((0..self.grips).map(Source::Grip));
@@ -214,7 +214,7 @@ impl Impulses {
         let pairs = sources.flat_map(|from| (0..self.bodies).map(move |on| (from, on)));
         let found = pairs.filter(|&(from, on)| from != Source::Body(on)).map(|(from, on)| {
             let [x, y, z, a, b, c] = std::array::from_fn(|at| means[self.place(from, on) + at]);
-            ContactForce { from, on, force: DVec3::new(x, y, z), torque: DVec3::new(a, b, c) }
+            Reaction { from, on, force: DVec3::new(x, y, z), torque: DVec3::new(a, b, c) }
         });
         (known == 1.0).then(|| found.collect())
     }

@@ -31,8 +31,8 @@ mod touches;
 
 pub(crate) use bound::{Bound, Floor};
 pub(crate) use end::End;
-pub use impulses::{ContactForce, Source};
 pub(crate) use impulses::{Felt, Impulses};
+pub use impulses::{Reaction, Source};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
 pub use overlap::{Overlap, Surfaces};

@@ -527,7 +527,7 @@ impl World {
             field,
             diagnostics,
             of_bodies,
-            contact_forces: self.contact_forces().unwrap_or_default(),
+            reactions: self.reactions().unwrap_or_default(),
             contact_points: system.impulses.as_ref().map_or_else(Vec::new, |_| self.contact_points()),
             status: state.status,
             unsolved: dynamics.unsolved(state),

@@ -1,7 +1,7 @@
-//! Forces of contact, for those who ask for them.
+//! Forces of contact and of constraints, for those who ask for them.
 
 use super::World;
-use crate::contact::{ContactForce, ContactPoint, Impulses, Side, Source};
+use crate::contact::{ContactPoint, Impulses, Reaction, Side, Source};
 use crate::diagnostics::Outside;
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::state::{Runaway, State};
@@ -11,19 +11,18 @@ use crate::world::Moment;
 use glam::DVec3;
 
 impl World {
-    /// Keeps the mean forces of contact from now on, over intervals of time: an interval ends with the step nearest to each multiple of the
-    /// moment `every`, and with every step if it is shorter. Bodies
-    /// move with the same bits as without, and a fast step costs a little more where nodes meet obstacles. Forces of a recorded world are
-    /// those that were recorded.
+    /// Keeps the mean forces of contact and of kinematic constraints from now on, over intervals of time: an interval ends with the step nearest
+    /// to each multiple of the moment `every`, and with every step if it is shorter. Bodies move with the same bits as without, and a fast step
+    /// costs a little more where nodes meet obstacles or are held. Forces of a recorded world are those that were recorded.
     ///
-    /// The sum of the forces on a body times the length of an interval is what contact has changed of its momentum in it. What one body
-    /// exerts on another is the opposite of what that exerts on it. Obstacles exert nothing on nodes that are held while nodes meet obstacles,
-    /// and surfaces also push nodes that are held. The torques are what it has
-    /// changed of the angular momentum about the origin.
+    /// The sum of the forces on a body times the length of an interval is the change of its momentum in it, but for gravity and loads. What one
+    /// body exerts on another is the opposite of what that exerts on it. Obstacles exert nothing on nodes that are held while nodes meet
+    /// obstacles. Surfaces also push nodes that are held, and what holds them pushes back. The torques are the change of the angular momentum
+    /// about the origin; for nodes that are dragged to first order in the step, unless a vectorised Euler method moves them.
     ///
     /// # Panics
     /// If `every` is not above zero.
-    pub fn keep_contact_forces(&mut self, every: Moment) {
+    pub fn keep_reactions(&mut self, every: Moment) {
         assert!(every.count / every.rate > 0.0, "an interval above zero");
         self.pause();
         let Surroundings { obstacles, grips, .. } = &self.system.surroundings;
@@ -34,13 +33,13 @@ impl World {
         self.system.impulses = Some(impulses);
     }
 
-    /// The mean forces of contact in the last interval that has ended, of each obstacle and then of each body on each other body; `None`
-    /// before the first end, and if they are [not kept](Self::keep_contact_forces).
-    pub fn contact_forces(&self) -> Option<Vec<ContactForce>> {
+    /// The mean forces in the last interval that has ended, of each obstacle, each constraint and then each body on each body, NaN for
+    /// constraints of models that move their nodes themselves; `None` before the first end, and if they are [not kept](Self::keep_reactions).
+    pub fn reactions(&self) -> Option<Vec<Reaction>> {
         let mut forces = self.system.impulses.as_ref()?.forces(&self.state.memory.contact)?;
         // Models that move nodes themselves do not say with which impulses.
         let is_known =
-            |one: &ContactForce| !matches!(one.from, Source::Grip(_)) || self.system.parts[one.on].projection.is_none();
+            |one: &Reaction| !matches!(one.from, Source::Grip(_)) || self.system.parts[one.on].projection.is_none();
         for one in forces.iter_mut().filter(|one| !is_known(one)) {
             (one.force, one.torque) = (DVec3::NAN, DVec3::NAN);
         }
@@ -81,7 +80,7 @@ impl World {
     pub(super) fn outside(&self, is_counted: bool) -> Vec<Outside> {
         let mut all = vec![Outside::default(); self.system.parts.len()];
         all.iter_mut().zip(self.work().into_iter().flatten()).for_each(|(outside, work)| outside.work = Some(work));
-        for ContactForce { from, on, force, torque } in self.contact_forces().iter().flatten() {
+        for Reaction { from, on, force, torque } in self.reactions().iter().flatten() {
             let Outside { contact, grips, .. } = &mut all[*on];
             let sums = if matches!(from, Source::Grip(_)) { grips } else { contact };
             let [sum, turning] = sums.unwrap_or_default();

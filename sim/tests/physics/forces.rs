@@ -7,8 +7,8 @@ use glam::{DQuat, DVec3};
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::xpbd::Xpbd;
 use localshape_sim::{
-    Body, BodyContact, ContactForce, ContactPoint, Contacts, Course, Crew, Diagnostic, Ease, Grip, Integrator, Kernel,
-    Key, Load, Loading, Moment, Motion, Obstacle, Offset, Shape, Side, Source, State, Status, Stepping, Surroundings,
+    Body, BodyContact, ContactPoint, Contacts, Course, Crew, Diagnostic, Ease, Grip, Integrator, Kernel, Key, Load,
+    Loading, Moment, Motion, Obstacle, Offset, Reaction, Shape, Side, Source, State, Status, Stepping, Surroundings,
     World,
 };
 use std::sync::Arc;
@@ -77,7 +77,7 @@ fn forces_are_the_change_of_momentum() {
             }
             let (bodies, mut world) = heap(integrator, kernel, has_surfaces, is_gripped);
             let step = 0.02 * std::f64::consts::TAU / 2e3f64.sqrt();
-            world.keep_contact_forces(Moment::at(7.0 * step));
+            world.keep_reactions(Moment::at(7.0 * step));
             let count = if integrator == Integrator::ExplicitEuler { 5 } else { 40 };
             let momenta = |world: &World| {
                 let State { position, velocity, .. } = world.state();
@@ -91,11 +91,11 @@ fn forces_are_the_change_of_momentum() {
                 bodies.iter().map(of).collect::<Vec<_>>()
             };
             let mut before = momenta(&world);
-            assert_eq!(world.contact_forces(), None);
+            assert_eq!(world.reactions(), None);
             let mut most: f64 = 0.0;
             for _ in 0..count {
                 world.advance(7);
-                let (now, forces) = (momenta(&world), world.contact_forces().expect("an interval has ended"));
+                let (now, forces) = (momenta(&world), world.reactions().expect("an interval has ended"));
                 let about = format!("{integrator:?} {kernel:?} {has_surfaces} at step {}", world.steps());
                 for (at, body) in bodies.iter().enumerate() {
                     let mass: f64 = body.mass().iter().sum();
@@ -104,7 +104,7 @@ fn forces_are_the_change_of_momentum() {
                     assert!(off.length() < 1e-12 * mass * 3.0, "{about}: {off} of body {at}");
                     most = most.max(force.length());
                 }
-                for ContactForce { from, on, force, torque } in &forces {
+                for Reaction { from, on, force, torque } in &forces {
                     let Source::Body(from) = *from else { continue };
                     let back = forces.iter().find(|one| (one.from, one.on) == (Source::Body(*on), from)).expect("both");
                     assert!((back.force + *force).length() <= 1e-12 * (1.0 + force.length()), "{about}");
@@ -131,7 +131,7 @@ fn torques_are_the_change_of_angular_momentum() {
     });
     let mut world = by(Integrator::SemiImplicitEuler, Kernel::Fast, &placed, 1e4, 0.02, with_contacts(0.8, 0.4));
     let time = 300.0 * 0.02 * std::f64::consts::TAU / 100.0;
-    world.keep_contact_forces(Moment::at(time));
+    world.keep_reactions(Moment::at(time));
     let of_one = |world: &World| {
         let State { position, velocity, .. } = world.state();
         let nodes = position.iter().zip(velocity).zip(body.mass());
@@ -139,7 +139,7 @@ fn torques_are_the_change_of_angular_momentum() {
     };
     let start = of_one(&world);
     world.advance(300);
-    let forces = world.contact_forces().expect("an interval has ended");
+    let forces = world.reactions().expect("an interval has ended");
     let torque = forces.iter().find(|one| one.on == 0).expect("a pair").torque;
     let (gained, told) = (of_one(&world) - start, torque * time);
     assert!(gained.length() > 0.5 && (gained - told).length() < 1e-10, "{gained} {told}");
@@ -156,17 +156,17 @@ fn asking_changes_no_bit() {
             let told = |threads: usize, ways: &[u64], is_cut: bool| {
                 let (_, mut world) = heap(integrator, kernel, has_surfaces, true);
                 world.set_crew(Crew::new(threads));
-                world.keep_contact_forces(Moment { count: 1.0, rate: 20.0 });
+                world.keep_reactions(Moment { count: 1.0, rate: 20.0 });
                 for &way in ways {
                     world.advance(way);
                     if is_cut {
                         let state = State::from_bytes(&world.state().to_bytes()).expect("what was written");
                         world = heap(integrator, kernel, has_surfaces, true).1;
-                        world.keep_contact_forces(Moment { count: 1.0, rate: 20.0 });
+                        world.keep_reactions(Moment { count: 1.0, rate: 20.0 });
                         world.set_state(state);
                     }
                 }
-                (world.state().clone(), world.contact_forces())
+                (world.state().clone(), world.reactions())
             };
             let first = told(1, &[150], false);
             assert_eq!(first.0.position, plain.state().position, "{integrator:?} {kernel:?} {has_surfaces}");
@@ -195,7 +195,7 @@ fn the_floor_carries_the_weight() {
         let placed = Placed { at: DVec3::ZERO, turned: DQuat::IDENTITY, speed: DVec3::ZERO };
         let around = Surroundings { grips, ..around };
         let mut world = by(Integrator::VelocityVerlet, Kernel::Fast, &[(Arc::clone(&body), placed)], 3e4, 0.02, around);
-        world.keep_contact_forces(Moment::at(2.0));
+        world.keep_reactions(Moment::at(2.0));
         world.advance((4.0 / (0.02 * std::f64::consts::TAU / 3e4f64.sqrt())) as u64 + 2);
         let points = world.contact_points();
         let is_below =
@@ -228,7 +228,7 @@ fn a_hold_carries_weight_and_load() {
         let around = Surroundings { gravity: DVec3::Y * -9.8, grips: vec![grip], loads, ..Surroundings::default() };
         let start = State::at_rest(body.rest().to_vec());
         let mut world = World::new(&body, start, &*model, around, Stepping::new(integrator, 1e-3));
-        world.keep_contact_forces(Moment::at(0.1));
+        world.keep_reactions(Moment::at(0.1));
         world.advance(3000);
         let diagnostics = world.diagnostics();
         assert!(diagnostics.contact_force.is_nan());

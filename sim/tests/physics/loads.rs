@@ -225,7 +225,7 @@ fn a_bar_is_stretched_by_its_traction() {
         let around = Surroundings { loads: vec![load], grips: vec![grip], ..Surroundings::default() };
         let start = State::at_rest(body.rest().to_vec());
         let mut world = World::new(&body, start, &model, around, Stepping::new(Integrator::SemiImplicitEuler, 2e-3));
-        world.keep_contact_forces(Moment::at(1.0));
+        world.keep_reactions(Moment::at(1.0));
         world.advance(40_000);
         let expected = traction * 6.0 * SIDE / (2.0 * 5e3 / SIDE);
         for &node in &right {

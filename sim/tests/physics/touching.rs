@@ -3,8 +3,8 @@
 use super::surfaces::{Noise, Placed, SIDE, block, by, moments, still, with_contacts};
 use glam::{DQuat, DVec3};
 use localshape_sim::{
-    Body, BodyContact, ContactForce, Contacts, Dimension, Ease, FrictionOf, Grip, Integrator, Kernel, Key, Moment,
-    Motion, Obstacle, Offset, Shape, State, Surroundings, World,
+    Body, BodyContact, Contacts, Dimension, Ease, FrictionOf, Grip, Integrator, Kernel, Key, Moment, Motion, Obstacle,
+    Offset, Reaction, Shape, Source, State, Surroundings, World,
 };
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -91,7 +91,7 @@ fn what_is_held_stays_and_feels_the_impact() {
     let grip = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::at(Offset::default()) };
     let around = Surroundings { grips: vec![grip], ..with_contacts(0.5, 0.4) };
     let mut world = world(&bodies.map(|placed| (Arc::clone(&body), placed)), around);
-    world.keep_contact_forces(Moment::at(200.0 * STEP));
+    world.keep_reactions(Moment::at(200.0 * STEP));
     let held = world.state().position[..body.len()].to_vec();
     let momentum = |world: &World| {
         let nodes = world.state().velocity[body.len()..].iter().zip(body.mass());
@@ -105,12 +105,15 @@ fn what_is_held_stays_and_feels_the_impact() {
     }
     let gained = momentum(&world) - before;
     assert!(gained.y > 8.0, "it is thrown back: {gained}");
-    let forces = world.contact_forces().expect("an interval has ended");
-    let of = |body: usize| {
-        let ContactForce { force, torque, .. } = forces.iter().find(|one| one.on == body).expect("a pair");
+    let forces = world.reactions().expect("an interval has ended");
+    let of = |from: Source, body: usize| {
+        let Reaction { force, torque, .. } =
+            forces.iter().find(|one| (one.from, one.on) == (from, body)).expect("a pair");
         [*force, *torque].map(|one| one * (200.0 * STEP))
     };
-    let ([on_held, turning], [on_other, back]) = (of(0), of(1));
+    let ([on_held, turning], [on_other, back]) = (of(Source::Body(1), 0), of(Source::Body(0), 1));
+    let holding = of(Source::Grip(0), 0)[0];
+    assert!((holding + on_held).length() < 1e-11, "what holds it is pushed: {holding}");
     assert!((on_other - gained).length() < 1e-11 && (on_held + gained).length() < 1e-11, "{on_held} {gained}");
     assert!((turning + back).length() < 0.02 * back.length(), "{turning} {back}");
 }

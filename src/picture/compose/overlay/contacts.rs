@@ -9,7 +9,7 @@ use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::scene::Scene;
-use crate::sim::{ContactForce, Diagnostic, Side, Source};
+use crate::sim::{Diagnostic, Reaction, Side, Source};
 use glam::DVec3;
 
 /// Radius of a dot, in radii of a ring, and at most in lengths of an element; its least one (px).
@@ -47,7 +47,7 @@ impl Overlay for Contacts {
         }
         let size = arrows::size(draft.element, draft.scale.unit);
         let metres = metres_a_newton(draft.scene);
-        let arrows = snapshot.contact_forces.iter().filter_map(|&ContactForce { from, on, force, .. }| {
+        let arrows = snapshot.reactions.iter().filter_map(|&Reaction { from, on, force, .. }| {
             let own = snapshot.contact_points.iter().filter(|point| {
                 let is_back = point.from == Side::Body(on) && from == Source::Body(point.on);
                 (Source::from(point.from), point.on) == (from, on) || is_back
