@@ -35,7 +35,7 @@ pub struct Snapshot {
     pub diagnostics: Diagnostics,
     /// The same of each body.
     pub of_bodies: Vec<Diagnostics>,
-    /// The mean forces of contact in the last interval that has ended; empty before, and in a world that
+    /// The mean forces of contact and of constraints in the last interval that has ended; empty before, and in a world that
     /// [is not asked for them](super::World::keep_reactions).
     pub reactions: Vec<Reaction>,
     /// Where bodies touch now, in a world that is asked for the forces.
