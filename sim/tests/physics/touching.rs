@@ -155,7 +155,7 @@ fn a_square_slows_down_in_the_plane() {
 /// Soft blocks that spin and fall among obstacles that move. A world that forgets what it knows before each step has the same bits.
 #[test]
 fn what_is_known_of_a_step_changes_no_bit() {
-    for round in 1..4 {
+    for round in 1..3 {
         let mut noise = Noise(round);
         let bodies: Vec<_> = (0..4u32)
             .map(|at| {
@@ -169,7 +169,7 @@ fn what_is_known_of_a_step_changes_no_bit() {
             obstacle(Shape::Sphere { centre: DVec3::ZERO, radius: 0.05 }, steady(DVec3::X * 0.5, DVec3::Y * 3.0), 0.4),
         ];
         let contacts = Contacts { restitution: 0.3, friction: 0.4, ..Contacts::default() };
-        let contacts = if round == 3 {
+        let contacts = if round == 2 {
             let itself = BodyContact { itself: true, thickness: None };
             Contacts { bodies: vec![itself; 4], ..contacts }
         } else {
@@ -191,10 +191,10 @@ fn what_is_known_of_a_step_changes_no_bit() {
             world
         };
         let (mut whole, mut forgetful) = (begin(), begin());
-        for _ in 0..40 {
-            whole.advance(4);
+        for _ in 0..20 {
+            whole.advance(8);
             forgetful = forgetful.clone();
-            forgetful.advance(4);
+            forgetful.advance(8);
             let State { position, velocity, .. } = whole.state();
             let same = (position, velocity) == (&forgetful.state().position, &forgetful.state().velocity);
             assert!(same, "round {round}, step {}", whole.steps());
