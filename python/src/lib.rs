@@ -2,6 +2,9 @@
 //!
 //! Each class wraps one type of the library and adds no meaning. What is simpler in Python is in `localshape/*.py`.
 
+// `cargo test --lib` asks for a program of tests, which would need the interpreter.
+#![cfg(not(test))]
+
 mod convert;
 mod error;
 mod interrupt;
