@@ -12,7 +12,7 @@ use glam::DVec3;
 
 impl World {
     /// Keeps the mean forces of contact and of kinematic constraints from now on, over intervals of time: an interval ends with the step nearest
-    /// to each multiple of the moment `every`, and with every step if it is shorter. Bodies move with the same bits as without, and a fast step
+    /// to each multiple of the moment `every`, and with every step if it is shorter. The sums of a state that was just taken go on. Bodies move with the same bits as without, and a fast step
     /// costs a little more where nodes meet obstacles or are held. Forces of a recorded world are those that were recorded.
     ///
     /// The sum of the forces on a body times the length of an interval is the change of its momentum in it, but for gravity and loads. What one
@@ -24,7 +24,11 @@ impl World {
     /// If `every` is not above zero.
     pub fn keep_reactions(&mut self, every: Moment) {
         assert!(every.count / every.rate > 0.0, "an interval above zero");
+        // A world that keeps none forgets the sums of its state as soon as it pauses. After further steps they are those of another moment.
+        let is_just_taken = self.system.impulses.is_none() && self.steps() == self.state.steps;
+        let of_state = is_just_taken.then(|| std::mem::take(&mut self.state.memory.contact));
         self.pause();
+        of_state.into_iter().for_each(|sums| self.state.memory.contact = sums);
         let Surroundings { obstacles, grips, .. } = &self.system.surroundings;
         let sizes = [obstacles.len(), grips.len(), self.system.parts.len()];
         let mut impulses = Impulses::new(sizes, every, self.state.steps);

@@ -277,3 +277,23 @@ fn crossings_belong_to_both_bodies() {
     let (all, of_each) = world.diagnostics_by_body(&[Diagnostic::Crossings]);
     assert_eq!([all.crossings, of_each[0].crossings, of_each[1].crossings], [*count as f64; 3]);
 }
+
+/// A state that is taken brings its sums, and one without sums begins anew.
+#[test]
+fn forces_go_on_with_the_state_that_has_them() {
+    let begin = || heap(Integrator::SemiImplicitEuler, Kernel::Fast, true, true).1;
+    let every = Moment { count: 1.0, rate: 20.0 };
+    let mut whole = begin();
+    whole.keep_reactions(every);
+    whole.advance(130);
+    let state = whole.state().clone();
+    let mut late = begin();
+    late.set_state(state);
+    late.keep_reactions(every);
+    assert!(late.reactions().is_some() && late.reactions() == whole.reactions());
+    [&mut whole, &mut late].map(|world| world.advance(30));
+    assert_eq!(late.reactions(), whole.reactions());
+    whole.set_state(begin().state().clone());
+    whole.advance(1);
+    assert_eq!(whole.reactions(), None);
+}
