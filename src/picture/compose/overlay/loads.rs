@@ -82,7 +82,7 @@ impl Overlay for Loads {
                     let (middle, axis) = (draft.middle_of(load), torque.normalize_or_zero());
                     let nodes = load.nodes().unwrap_or_default().iter().map(|&node| draft.position[node as usize]);
                     let farthest = nodes.fold(0.0, |far: f64, at| far.max((at - middle).cross(axis).length()));
-                    found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]));
+                    found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]).into_iter().flatten());
                 }
             }
         }
@@ -161,7 +161,7 @@ impl Draft<'_> {
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.
-    fn arc(&self, middle: DVec3, axis: DVec3, [radius, angle]: [f64; 2]) -> Option<(f64, Item)> {
+    fn arc(&self, middle: DVec3, axis: DVec3, [radius, angle]: [f64; 2]) -> Option<[(f64, Item); 2]> {
         let start = axis.any_orthonormal_vector() * radius;
         let at = |piece: usize| middle + DQuat::from_axis_angle(axis, angle * piece as f64 / PIECES as f64) * start;
         let pixels: Vec<_> = (0..=PIECES).map(|piece| self.pixel(at(piece))).collect::<Option<_>>()?;
@@ -171,6 +171,7 @@ impl Draft<'_> {
         let curve: Vec<[f64; 2]> = pixels[..PIECES].iter().map(|pixel| pixel.to_array()).collect();
         let line = Item::curve(&curve, STRONG * self.scale.unit, &[], palette.text);
         let head = arrows::arrow([before, end], size, palette.text, palette.background);
-        Some((self.lens.project(middle)?.1, Item::part("arc", [line, head])))
+        let (_, depth) = self.lens.project(middle)?;
+        Some([(depth, line), (depth, head)])
     }
 }
