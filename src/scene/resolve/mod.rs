@@ -8,6 +8,7 @@ mod contact;
 mod disorder;
 mod doubts;
 mod elements;
+mod faces;
 mod grips;
 mod lists;
 mod loads;
