@@ -40,7 +40,7 @@ enum Own {
 /// The bodies that a recording shows.
 pub(super) enum Shown {
     /// The bodies of its run.
-    Bodies(State),
+    Bodies(Box<State>),
     /// A body of its own.
     Own(Box<SceneBody>),
 }
@@ -117,7 +117,7 @@ impl ReadRecording {
         };
         let start = recorded.start();
         let start = State::new(start.position, start.velocity);
-        let Some((own, turned, notes)) = own else { return Some((recorded, Shown::Bodies(start))) };
+        let Some((own, turned, notes)) = own else { return Some((recorded, Shown::Bodies(Box::new(start)))) };
         if run.bodies.is_some() {
             let help = "remove `bodies`, so that its own body is shown";
             return source.tell(Flaw::new("", "has another body than those in `bodies`").with_help(help), report);

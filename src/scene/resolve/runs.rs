@@ -99,7 +99,7 @@ impl Resolved<'_> {
             }
             let (recorded, shown) = read?.shown(run, bodies.whole(), report)?;
             let (of, bodies, initial) = match shown {
-                Shown::Bodies(start) => (of.clone(), bodies, start),
+                Shown::Bodies(start) => (of.clone(), bodies, *start),
                 Shown::Own(body) => {
                     if self.bodies.iter().any(|other| other.name == body.name) || body.name == ALL_BODIES {
                         let name = words::quoted(&run.name);
