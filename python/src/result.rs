@@ -8,8 +8,10 @@ use localshape::Runner;
 use localshape::glam::DVec3;
 use localshape::runner::{Frame, History};
 use localshape::sim::{Diagnostic, Diagnostics, Divergence, Status, Value};
+#[cfg(feature = "render")]
+use numpy::PyUntypedArrayMethods;
 use numpy::ndarray::Array;
-use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

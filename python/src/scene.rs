@@ -117,10 +117,12 @@ impl Scene {
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let scene = self.now();
-        let mut found = scene.warnings.clone();
         #[cfg(feature = "render")]
-        found.extend(py.detach(|| localshape::internals::doubts(&scene).0));
-        let found = found.iter().map(|one| error::as_dict(py, one)).collect::<PyResult<Vec<_>>>()?;
+        let doubts = py.detach(|| localshape::internals::doubts(&scene).0);
+        #[cfg(not(feature = "render"))]
+        let doubts = Vec::new();
+        let found =
+            scene.warnings.iter().chain(&doubts).map(|one| error::as_dict(py, one)).collect::<PyResult<Vec<_>>>()?;
         py.import("localshape._errors")?.call_method1("mistakes", (PyList::new(py, found)?,))
     }
 

@@ -6,11 +6,9 @@ pub use crate::cli::{doubts, settle, unprintable, width_to_set};
 pub use crate::colour::{ciede2000, lab, linear};
 pub use crate::golden::Pixels;
 pub use crate::golden::page::{Page, PicturePair};
-#[cfg(feature = "render")]
-pub use crate::output::encode_print;
 pub use crate::output::{
-    Clock, Compression, Shown, Spent, Tags, Timings, encode, exact, is_folder, read_file, read_tags, rows_as_csv,
-    shell::line as command_line, thread_time, write_whole,
+    Clock, Compression, Shown, Spent, Tags, Timings, encode, encode_print, exact, is_folder, read_file, read_tags,
+    rows_as_csv, shell::line as command_line, thread_time, write_whole,
 };
 pub use crate::scene::generate::random::unit as random_unit;
 pub use crate::sim::peak::{lanes, limit_lanes, multiply_adds};

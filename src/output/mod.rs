@@ -38,9 +38,7 @@ pub(crate) use folder::{Access, Claimed, Folder};
 pub use frame_folder::FrameFolder;
 pub(crate) use frame_name::FRAME_FILES;
 pub(crate) use lock::FolderLock;
-#[cfg(feature = "render")]
-pub use png::encode_print;
-pub use png::{Compression, Shown, Tags, encode, read_tags};
+pub use png::{Compression, Shown, Tags, encode, encode_print, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use summary::{Numbers, Outcome, RunEntry, RunStatus, SUMMARY_FILE, Summary, document};
 pub use timing::{Clock, Spent, Timings, thread_time};

@@ -6,8 +6,8 @@ mod contact;
 mod digest;
 mod figures;
 mod good;
-#[cfg(feature = "render")]
 mod loads;
+#[cfg(feature = "render")]
 mod look;
 mod manipulators;
 mod material;
