@@ -3,7 +3,6 @@
 use crate::interrupt::{Slices, in_pool};
 #[cfg(feature = "render")]
 use crate::picture::Picture;
-use crate::scene::run_of;
 use localshape::Runner;
 use localshape::glam::DVec3;
 use localshape::runner::{Frame, History};
@@ -12,10 +11,18 @@ use localshape::sim::{Diagnostic, Diagnostics, Divergence, Status, Value};
 use numpy::PyUntypedArrayMethods;
 use numpy::ndarray::Array;
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
-use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
+
+/// The number of the run with a name.
+pub(crate) fn run_of(scene: &localshape::Scene, name: &str) -> PyResult<usize> {
+    scene.runs.iter().position(|run| run.name == name).ok_or_else(|| {
+        let names: Vec<_> = scene.runs.iter().map(|run| format!("“{}”", run.name)).collect();
+        PyKeyError::new_err(format!("the scene has no run “{name}”; its runs are {}", names.join(", ")))
+    })
+}
 
 /// The frames of a simulated scene: `result["NAME"]` has the arrays of a run, and `result.frame(t)` is a picture.
 #[pyclass(frozen, module = "localshape")]
@@ -173,7 +180,7 @@ impl Result {
             None => {
                 run_of(&self.scene, name)?;
                 let message = format!("the run “{name}” was not simulated; the result has {}", self.runs().join(", "));
-                Err(pyo3::exceptions::PyKeyError::new_err(message))
+                Err(PyKeyError::new_err(message))
             }
         }
     }

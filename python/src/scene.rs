@@ -1,10 +1,9 @@
 //! Scenes: files or keys, and their settings.
 
-use crate::result::{self, Result};
+use crate::result::{self, Result, run_of};
 use crate::world::World;
 use crate::{convert, error};
 use localshape::scene::{Limits, SceneKeys, Setting};
-use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
@@ -57,14 +56,6 @@ impl Scene {
     fn now(&self) -> Arc<localshape::Scene> {
         Arc::clone(&self.state().scene)
     }
-}
-
-/// The number of the run with a name.
-pub(crate) fn run_of(scene: &localshape::Scene, name: &str) -> PyResult<usize> {
-    scene.runs.iter().position(|run| run.name == name).ok_or_else(|| {
-        let names: Vec<_> = scene.runs.iter().map(|run| format!("“{}”", run.name)).collect();
-        PyKeyError::new_err(format!("the scene has no run “{name}”; its runs are {}", names.join(", ")))
-    })
 }
 
 #[pymethods]

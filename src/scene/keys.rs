@@ -1,12 +1,7 @@
 //! Scenes from the keys of scene files in memory, as of a program in another language.
 
-use super::error::SceneError;
 use super::file::{BodyFile, Coordinates, Positive, SceneFile};
-use super::limits::Limits;
-use super::load::Document;
-use super::{Mistake, Mistakes, Scene};
 use crate::reading::setting::Setting;
-use std::path::Path;
 use toml::{Table, Value};
 
 /// The lists of one body in memory, which mean the same as the keys of scene files. They are not written as text, which takes long for
@@ -33,7 +28,7 @@ pub struct BodyLists {
 #[derive(Clone, Debug)]
 pub struct SceneKeys {
     /// The name of the scene, in messages and by default as its title.
-    name: String,
+    pub(super) name: String,
     /// The keys as a scene file, with the first entry of each list in memory.
     pub(super) text: String,
     /// The lists of each body.
@@ -57,7 +52,7 @@ impl SceneKeys {
     }
 
     /// The first setting of a list in memory, or of a table that contains one, whose text would be ignored.
-    fn of_lists<'s>(&self, settings: &'s [Setting]) -> Option<&'s Setting> {
+    pub(super) fn of_lists<'s>(&self, settings: &'s [Setting]) -> Option<&'s Setting> {
         let is_list = |key: &str| self.lists.iter().any(|lists| lists.begun().any(|(list, _)| list == key));
         settings.iter().find(|setting| match setting.keys()[..] {
             ["body"] => self.lists.iter().any(|lists| lists.begun().next().is_some()),
@@ -106,41 +101,5 @@ impl SceneFile {
     pub(super) fn fill(&mut self, lists: &[BodyLists]) {
         let bodies = self.body.iter_mut().zip(lists);
         bodies.for_each(|(body, lists)| body.iter_mut().for_each(|body| lists.fill(body)));
-    }
-}
-
-impl Scene {
-    /// A scene from the keys of a scene file in memory, with other values of some keys. Files that it names are searched in the current
-    /// directory. Mistakes have the path of their key as place.
-    ///
-    /// ```
-    /// use localshape::scene::{BodyLists, Limits, Scene, SceneKeys};
-    /// let keys = localshape::toml::from_str(
-    ///     "time.duration = 1
-    ///     run = [{ name = 'One', model = { kind = 'shape-based', stiffness = 1e4 } }]
-    ///     [body]",
-    /// )?;
-    /// let nodes = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into).to_vec();
-    /// let triangle = BodyLists { nodes: Some(nodes), elements: Some(vec![vec![0, 1, 2]]), ..BodyLists::default() };
-    /// let keys = SceneKeys::new("triangle", keys, vec![triangle]);
-    /// assert_eq!(Scene::from_keys(&keys, &[], &Limits::default())?.bodies[0].body.len(), 3);
-    /// let error = Scene::from_keys(&keys, &["run[0].model.stiffness=-1".parse()?], &Limits::default()).unwrap_err();
-    /// assert_eq!(error.mistakes()[0].place, "run[0].model.stiffness");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// The keys are not those of a scene. All mistakes are reported. A list in memory cannot be set.
-    pub fn from_keys(keys: &SceneKeys, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
-        let SceneKeys { name, text, lists } = keys;
-        if let Some(setting) = keys.of_lists(settings) {
-            let place = setting.key().to_owned();
-            let message = format!("`{place}` is in memory or contains what is, and cannot be set");
-            let help = Some("make a scene with another list".to_owned());
-            let (line, column, excerpt, marked) = Default::default();
-            let found = vec![Mistake { line, column, place, message, help, excerpt, marked }];
-            return Err(SceneError::Mistakes(Mistakes { file: name.clone(), found, total: 1 }));
-        }
-        Self::read(Document { text, name, settings, lists: Some(lists) }, Path::new(""), limits)
     }
 }

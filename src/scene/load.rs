@@ -2,13 +2,13 @@
 
 use super::error::SceneError;
 use super::file::SceneFile;
-use super::keys::BodyLists;
+use super::keys::{BodyLists, SceneKeys};
 use super::limits::Limits;
 use super::mesh::is_mesh;
 use super::resolve::Typed;
 use super::schema::SCHEMA;
 use super::structure::Checked;
-use super::{Scene, structure, syntax};
+use super::{Mistake, Mistakes, Scene, structure, syntax};
 use crate::reading::beside::{in_folders, similar};
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::setting::{Setting, Wrong};
@@ -70,6 +70,40 @@ impl Scene {
     /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
         Self::read(Document { text, name, settings: &[], lists: None }, Path::new(""), limits)
+    }
+
+    /// A scene from the keys of a scene file in memory, with other values of some keys. Files that it names are searched in the current
+    /// directory. Mistakes have the path of their key as place.
+    ///
+    /// ```
+    /// use localshape::scene::{BodyLists, Limits, Scene, SceneKeys};
+    /// let keys = localshape::toml::from_str(
+    ///     "time.duration = 1
+    ///     run = [{ name = 'One', model = { kind = 'shape-based', stiffness = 1e4 } }]
+    ///     [body]",
+    /// )?;
+    /// let nodes = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into).to_vec();
+    /// let triangle = BodyLists { nodes: Some(nodes), elements: Some(vec![vec![0, 1, 2]]), ..BodyLists::default() };
+    /// let keys = SceneKeys::new("triangle", keys, vec![triangle]);
+    /// assert_eq!(Scene::from_keys(&keys, &[], &Limits::default())?.bodies[0].body.len(), 3);
+    /// let error = Scene::from_keys(&keys, &["run[0].model.stiffness=-1".parse()?], &Limits::default()).unwrap_err();
+    /// assert_eq!(error.mistakes()[0].place, "run[0].model.stiffness");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The keys are not those of a scene. All mistakes are reported. A list in memory cannot be set.
+    pub fn from_keys(keys: &SceneKeys, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
+        let SceneKeys { name, text, lists } = keys;
+        if let Some(setting) = keys.of_lists(settings) {
+            let place = setting.key().to_owned();
+            let message = format!("`{place}` is in memory or contains what is, and cannot be set");
+            let help = Some("make a scene with another list".to_owned());
+            let (line, column, excerpt, marked) = Default::default();
+            let found = vec![Mistake { line, column, place, message, help, excerpt, marked }];
+            return Err(SceneError::Mistakes(Mistakes { file: name.clone(), found, total: 1 }));
+        }
+        Self::read(Document { text, name, settings, lists: Some(lists) }, Path::new(""), limits)
     }
 
     /// Reads a scene from a text. Files of bodies and fonts are searched in `folder`.
