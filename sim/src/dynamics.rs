@@ -21,6 +21,12 @@ pub(super) trait Dynamics: Send + Sync {
     /// Writes the state back, if it is kept elsewhere.
     fn settle(&mut self, _state: &mut State) {}
 
+    /// Takes the positions and velocities of nodes from a state, and nothing else.
+    fn place(&mut self, _state: &State) {}
+
+    /// Writes the positions and velocities of nodes back, and nothing else.
+    fn read(&mut self, _state: &mut State) {}
+
     /// Energy and residuals of a part in a state that is settled. Calls `share`, if given, as [`ForceModel::report`]
     /// does, which is the reference. It may use the threads of the crew.
     ///
@@ -78,6 +84,9 @@ impl SpeedLimit {
     const MARGIN: f64 = 10.0;
     /// The greatest limit (m/s): its square is finite. It holds where loads and paths of the caller may make nodes faster than is known.
     const MOST: f64 = 1e150;
+
+    /// Any speed that is finite.
+    pub(super) const NONE: Self = Self { own: Self::MOST, growth: 0.0, since: 0.0 };
 
     /// The limit for one part from its state at a time (s), with the shortest period (s) of its model.
     pub(super) fn new(part: &Part, at: Nodes<'_>, surroundings: &Surroundings, step: f64, since: f64) -> Self {

@@ -208,6 +208,16 @@ impl Dynamics for ByKernel {
         }
     }
 
+    fn place(&mut self, state: &State) {
+        if self.constraints.is_some() {
+            self.rollback.place(&state.position, &state.velocity);
+        }
+    }
+
+    fn read(&mut self, state: &mut State) {
+        self.rollback.nodes(&mut state.position, &mut state.velocity);
+    }
+
     fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>, crew: &Crew) -> Report {
         let energy = &self.energies[part.number];
         energy.report(&state.position[part.nodes.clone()], &state.memory.model[part.memory.clone()], share, crew)

@@ -141,6 +141,18 @@ pub(crate) trait Stepper: Send + Sync {
     fn node(&mut self, node: usize) -> (DVec3, DVec3);
     /// Sets the position and velocity of a node.
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3);
+    /// Sets the positions (m) and velocities (m/s) of all nodes.
+    fn place(&mut self, position: &[DVec3], velocity: &[DVec3]) {
+        for (node, (&position, &velocity)) in position.iter().zip(velocity).enumerate() {
+            self.set_node(node, position, velocity);
+        }
+    }
+    /// Writes the positions and velocities of all nodes.
+    fn read(&mut self, position: &mut [DVec3], velocity: &mut [DVec3]) {
+        for (node, (position, velocity)) in position.iter_mut().zip(velocity).enumerate() {
+            (*position, *velocity) = self.node(node);
+        }
+    }
     /// Whether forces depend on velocities.
     fn is_damped(&self) -> bool;
     /// A copy with the state.
@@ -256,6 +268,20 @@ impl Rollback {
     pub(crate) fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
         for PartStepper { stepper, nodes, memory: own } in &mut self.parts {
             stepper.store(&mut position[nodes.clone()], &mut velocity[nodes.clone()], &mut memory[own.clone()]);
+        }
+    }
+
+    /// Sets positions (m) and velocities (m/s), without the memory of models.
+    pub(crate) fn place(&mut self, position: &[DVec3], velocity: &[DVec3]) {
+        for PartStepper { stepper, nodes, .. } in &mut self.parts {
+            stepper.place(&position[nodes.clone()], &velocity[nodes.clone()]);
+        }
+    }
+
+    /// Writes positions and velocities.
+    pub(crate) fn nodes(&mut self, position: &mut [DVec3], velocity: &mut [DVec3]) {
+        for PartStepper { stepper, nodes, .. } in &mut self.parts {
+            stepper.read(&mut position[nodes.clone()], &mut velocity[nodes.clone()]);
         }
     }
 

@@ -1,5 +1,6 @@
 //! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
+mod balance;
 mod change;
 mod touching;
 

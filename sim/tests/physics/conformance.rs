@@ -27,7 +27,7 @@ pub(crate) struct Case {
     pub(crate) model: Arc<dyn ElasticModel>,
     /// Whether its forces are the gradient of its energy. Those of Eq. (16) as printed are not: its matrix is not a
     /// rotation, so rotating it costs energy.
-    has_potential: bool,
+    pub(crate) has_potential: bool,
     /// Whether a body that is rotated during a simulation is free of forces again. With Eq. (16) it has grown.
     forgets_turns: bool,
     /// Whether rotation causes no forces, and forces no torque. Linear elements take rotation for strain.

@@ -11,6 +11,7 @@ mod contact;
 #[cfg(feature = "scene")]
 mod continuum;
 mod degenerate_starts;
+mod equilibrium;
 #[allow(unreachable_pub, reason = "documentation shows it, too")]
 mod example_model;
 mod figures;

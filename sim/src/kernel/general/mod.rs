@@ -360,9 +360,7 @@ pub(super) fn first_of(one: u32, lanes: u32, held: &[bool], index: impl Fn(usize
 
 impl<W: Law> Stepper for General<W> {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
-        for node in 0..self.places.len() {
-            self.set_node(node, position[node], velocity[node]);
-        }
+        self.place(position, velocity);
         let width = W::MEMORY;
         for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
             let numbers = class.memory.as_mut_slice();
@@ -376,9 +374,7 @@ impl<W: Law> Stepper for General<W> {
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
-        for node in 0..self.places.len() {
-            (position[node], velocity[node]) = self.node(node);
-        }
+        self.read(position, velocity);
         let width = W::MEMORY;
         for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
             let numbers = class.memory.as_mut_slice();

@@ -175,6 +175,8 @@ pub(crate) struct LatticeStepper {
     parts: usize,
     /// The numbers of the nodes, plane after plane; see [`slot`].
     nodes: Aligned,
+    /// Where the first number of each node is.
+    places: Box<[u32]>,
     /// The rotations of the boxes (x, y, z, w), plane after plane; see [`slot`].
     turns: Aligned,
     /// Copies of `nodes` and `turns`.
@@ -262,9 +264,10 @@ impl LatticeStepper {
         let [nodes, turns] = [(planes + 1) * parts * stride, planes * 4 * grid.box_stride()];
         let kept = [nodes, turns].map(Aligned::zeros);
         let [mut nodes, turns] = [nodes, turns].map(Aligned::zeros);
-        for (node, &mass) in body.mass.iter().enumerate() {
-            let (plane, at) = (node / grid.layer(), node % grid.layer());
-            nodes.as_mut_slice()[slot(plane * stride + at, parts) + INVERSE_MASS * MOST] = mass.recip();
+        let place = |node: usize| slot(node / grid.layer() * stride + node % grid.layer(), parts) as u32;
+        let places: Box<[u32]> = (0..body.len()).map(place).collect();
+        for (&place, &mass) in places.iter().zip(&body.mass) {
+            nodes.as_mut_slice()[place as usize + INVERSE_MASS * MOST] = mass.recip();
         }
         let mut pattern = Pattern { live: Aligned::zeros(grid.box_stride()), valence: Aligned::zeros(stride) };
         let live = pattern.live.as_mut_slice();
@@ -274,12 +277,12 @@ impl LatticeStepper {
             *valence = edge(at % row, row - 1) * edge(at / row, rows);
         }
         let (slabs, signals, tally) = (Aligned::zeros(0), Box::default(), Tally::default());
-        Some(Self { set, grid, parameters, parts, nodes, turns, kept, tally, pattern, slabs, signals })
+        Some(Self { set, grid, parameters, parts, nodes, places, turns, kept, tally, pattern, slabs, signals })
     }
 
     /// The index in `nodes` of the first number of a node.
     fn index(&self, node: usize) -> usize {
-        slot(node / self.grid.layer() * self.grid.stride() + node % self.grid.layer(), self.parts)
+        self.places[node] as usize
     }
 
     fn turn_index(&self, element: usize) -> usize {
@@ -290,9 +293,7 @@ impl LatticeStepper {
 
 impl Stepper for LatticeStepper {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
-        for (node, (&position, &velocity)) in position.iter().zip(velocity).enumerate() {
-            self.set_node(node, position, velocity);
-        }
+        self.place(position, velocity);
         // The ends of rows have a rotation, too, which has no effect.
         for (at, turn) in self.turns.as_mut_slice().iter_mut().enumerate() {
             *turn = if at / MOST % 4 == 3 { 1.0 } else { 0.0 };
@@ -306,9 +307,7 @@ impl Stepper for LatticeStepper {
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
-        for (node, (position, velocity)) in position.iter_mut().zip(velocity).enumerate() {
-            (*position, *velocity) = self.node(node);
-        }
+        self.read(position, velocity);
         for (element, turn) in memory.chunks_exact_mut(4).enumerate() {
             let at = self.turn_index(element);
             let turns = self.turns.as_mut_slice();

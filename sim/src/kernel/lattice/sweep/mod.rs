@@ -26,8 +26,20 @@ pub(super) fn run(
     around: &Around<'_>,
     crew: &Crew,
 ) -> Option<Lost> {
-    let LatticeStepper { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, tally, kept: _ } =
-        lattice;
+    let LatticeStepper {
+        set,
+        grid,
+        parameters,
+        parts,
+        nodes,
+        turns,
+        pattern,
+        slabs,
+        signals,
+        tally,
+        kept: _,
+        places: _,
+    } = lattice;
     if some.is_empty() {
         return None;
     }
