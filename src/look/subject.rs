@@ -38,6 +38,8 @@ pub(crate) struct SubjectRun<'a> {
     pub(crate) of: &'a [usize],
     /// The number of nodes of all its bodies.
     pub(crate) nodes: usize,
+    /// Where it starts.
+    pub(crate) initial: &'a State,
     /// The model of each body.
     pub(crate) models: &'a [Arc<dyn ElasticModel>],
     /// Whether nodes are held or dragged.
@@ -64,7 +66,8 @@ impl<'a> Subject<'a> {
 
     /// The corners of the box around all bodies at the start (m).
     pub(super) fn start(&self) -> (DVec3, DVec3) {
-        let boxes = self.bodies.iter().map(|one| bounds(&one.initial.position));
+        let starts = self.bodies.iter().map(|one| one.initial).chain(self.runs.iter().map(|run| run.initial));
+        let boxes = starts.map(|start| bounds(&start.position));
         let around = boxes.reduce(|(low, high), (from, to)| (low.min(from), high.max(to)));
         around.expect("at least one body")
     }

@@ -3,7 +3,7 @@
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::runner::{Frame, TableRow, TimeSeries};
-use crate::scene::Scene;
+use crate::scene::{Rest, Scene};
 use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
@@ -106,6 +106,9 @@ pub(crate) struct RunEntry {
     /// `ok`, `ended` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
+    /// How near to rest it starts; absent if it does not start at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<Rest>,
     /// The cause of its divergence; absent if it did not diverge, or if its states are read from a file.
     #[serde(flatten)]
     pub cause: Option<Cause>,
@@ -206,6 +209,7 @@ impl Summary {
                 name: run.name.clone(),
                 bodies: run.body_names(scene).map(str::to_owned).collect(),
                 time_step: run.step,
+                rest: run.rest,
                 ..RunEntry::default()
             }
         };

@@ -13,9 +13,7 @@ mod stored;
 
 use crate::look::Traced;
 use crate::scene::{Recorded, Scene};
-use crate::sim::{
-    Body, Crew, Diagnostic, Diagnostics, Integrator, Load, Moment, State, Status, Stepping, Surroundings, World,
-};
+use crate::sim::{Body, Crew, Diagnostic, Diagnostics, Integrator, Moment, State, Status, Stepping, World};
 pub use frame::{Frame, LastFit, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
 pub(crate) use history::TableRow;
@@ -426,14 +424,7 @@ impl Scene {
     /// If the scene has no such run.
     pub fn world(&self, run: usize) -> World {
         let run = &self.runs[run];
-        let surroundings = Surroundings {
-            gravity: self.gravity,
-            obstacles: self.obstacles.clone(),
-            contacts: self.contacts.as_ref().map(|contacts| run.contacts(contacts)),
-            grips: run.grips.clone(),
-            loads: run.loads.iter().map(|load| Arc::clone(load) as Arc<dyn Load>).collect(),
-            ..Surroundings::default()
-        };
+        let surroundings = run.surroundings(self.gravity, &self.obstacles, self.contacts.as_ref());
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
         let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
         let bodies = run.bodies.bodies();

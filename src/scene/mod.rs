@@ -52,7 +52,7 @@ pub use limits::Limits;
 pub(crate) use load::is_figure_file;
 pub use recording::Recorded;
 pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};
-pub use run::Run;
+pub use run::{Rest, Run};
 pub use schema::schema;
 pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 #[cfg(feature = "render")]
@@ -146,8 +146,9 @@ fn subject<'a>(bodies: &'a [SceneBody], runs: &'a [Run], gravity: DVec3, obstacl
         SubjectBody { name, body, initial, side: *side, has_cells: *has_cells }
     };
     let run = |one: &'a Run| {
-        let Run { name, of, bodies, models, step, .. } = one;
-        SubjectRun { name, step: *step, of, nodes: bodies.whole().len(), models, is_gripped: !one.grips.is_empty() }
+        let Run { name, of, bodies, initial, models, step, .. } = one;
+        let (nodes, is_gripped) = (bodies.whole().len(), !one.grips.is_empty());
+        SubjectRun { name, step: *step, of, nodes, initial, models, is_gripped }
     };
     Subject { bodies: bodies.iter().map(body).collect(), gravity, obstacles, runs: runs.iter().map(run).collect() }
 }

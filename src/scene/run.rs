@@ -3,7 +3,11 @@
 use super::{Recorded, Scene, SceneBody};
 use crate::colour::Colour;
 use crate::sim::model::ElasticModel;
-use crate::sim::{Assembly, Body, Contacts, Grip, Integrator, Kernel, Loading, PairContact, Side, State};
+use crate::sim::{
+    Assembly, Body, Contacts, Grip, Integrator, Kernel, Load, Loading, Obstacle, PairContact, Side, State, Surroundings,
+};
+use glam::DVec3;
+use serde::Serialize;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -18,6 +22,8 @@ pub struct Run {
     pub bodies: Arc<Assembly>,
     /// The initial state of all its bodies.
     pub initial: State,
+    /// What is left of the forces at the start, if it starts at rest.
+    pub rest: Option<Rest>,
     /// The elastic model of each body; empty for a recording.
     pub models: Vec<Arc<dyn ElasticModel>>,
     /// The recording that it shows.
@@ -42,6 +48,15 @@ pub struct Run {
     pub(crate) place: usize,
     /// A chosen colour of the run's lines. Other runs get different colours.
     pub colour: Option<Colour>,
+}
+
+/// How near to rest a run starts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rest {
+    /// The forces that are left, as a share of the load: see [`Equilibrium::residual`](crate::sim::Equilibrium::residual).
+    pub residual: f64,
+    /// How often forces were evaluated to find it.
+    pub evaluations: u64,
 }
 
 impl Run {
@@ -69,6 +84,23 @@ impl Run {
     /// Each model with its body at rest.
     pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
         self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
+    }
+
+    /// What acts on its bodies: gravity (m/s²), obstacles, contact as the scene says, and its own constraints and loads.
+    pub(crate) fn surroundings(
+        &self,
+        gravity: DVec3,
+        obstacles: &[Obstacle],
+        contacts: Option<&Contacts>,
+    ) -> Surroundings {
+        Surroundings {
+            gravity,
+            obstacles: obstacles.to_vec(),
+            contacts: contacts.map(|contacts| self.contacts(contacts)),
+            grips: self.grips.clone(),
+            loads: self.loads.iter().map(|load| Arc::clone(load) as Arc<dyn Load>).collect(),
+            ..Surroundings::default()
+        }
     }
 
     /// Contact of its bodies, counted from its first one, from that of the bodies of the scene.

@@ -17,6 +17,7 @@ mod peers;
 mod plausible;
 mod plural;
 mod recordings;
+mod rest;
 mod robust;
 mod schema;
 mod several;

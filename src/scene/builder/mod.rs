@@ -27,7 +27,9 @@ pub use obstacle::ObstacleBuilder;
 pub use run::RunBuilder;
 
 use super::error::SceneError;
-use super::file::{Coordinates, GrabFile, HoldFile, MotionPath, Positive, RunFile, SceneFile, StepFile, TimeFile};
+use super::file::{
+    Coordinates, GrabFile, HoldFile, MotionPath, Positive, RunFile, SceneFile, StartFile, StepFile, TimeFile,
+};
 use super::resolve::Typed;
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
@@ -83,6 +85,7 @@ impl Scene {
     pub fn builder(name: impl Into<String>, body: BodyBuilder) -> SceneBuilder {
         let time = TimeFile {
             duration: 1.0,
+            start: None,
             step: None,
             tolerance: None,
             frames_per_second: 60.0,
@@ -120,6 +123,8 @@ impl SceneBuilder {
         gravity(acceleration: impl Into<Coordinates>) file.gravity = Some(acceleration.into());
         /// Simulated time (s).
         duration(seconds: f64) time.duration = seconds;
+        /// Starts each run where its bodies are at rest.
+        at_rest() time.start = Some(StartFile::Equilibrium);
         /// Time step ΔT (s) of runs without a step of their own.
         step(seconds: f64) time.step = Some(StepFile::Seconds(seconds));
         /// The number of steps in the shortest period T = 2π√(m/k) of all runs, 50 by default, for runs without a step

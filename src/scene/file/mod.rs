@@ -22,7 +22,7 @@ pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, Region
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 pub(in crate::scene) use run::{ModelFile, RunFile, RunSource, StatesFile};
-pub(in crate::scene) use time::{StepFile, TimeFile};
+pub(in crate::scene) use time::{StartFile, StepFile, TimeFile};
 
 use crate::look::{TypedView, View};
 pub use crate::reading::coordinates::Coordinates;

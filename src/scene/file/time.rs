@@ -13,6 +13,8 @@ pub(in crate::scene) struct TimeFile {
     /// Simulated time (s); 0 shows only the start.
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
+    /// Where runs start. Default: where their bodies are placed.
+    pub(in crate::scene) start: Option<StartFile>,
     /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
     /// the mass of the lightest node and the largest stiffness of all bodies and runs; of `volume-springs` that of a spring or that of
     /// an element against changes of its volume. `"auto"` takes equal steps between two
@@ -38,6 +40,15 @@ pub(in crate::scene) struct TimeFile {
 
 fn sixty() -> f64 {
     60.0
+}
+
+/// A start other than that of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum StartFile {
+    /// At rest: each run starts where the forces of its model balance gravity, the loads at the start, and what holds or meets its bodies.
+    /// Obstacles do not move before the start. Velocities are those of the bodies. `localshape check` tells what is left of the forces.
+    Equilibrium,
 }
 
 /// A time step as typed.

@@ -18,6 +18,7 @@ mod motion;
 mod nodes;
 mod obstacles;
 mod recordings;
+mod rest;
 mod runs;
 mod steps;
 mod table;
@@ -84,7 +85,8 @@ impl<'a> Typed<'a> {
     /// The scene with this name, or `None` after any mistake: first the physics, then the view.
     pub(super) fn resolve(&self, name: &str, report: &mut Collector<'_>) -> Option<Scene> {
         let file = self.file;
-        let physics = self.physics(report);
+        let mut physics = self.physics(report);
+        rest::start(self, &mut physics, report);
         let font = self.font(report);
         let view = self.view(&physics, font.clone().unwrap_or_default(), report);
         if let (0, Some(runs)) = (report.total(), &physics.runs) {

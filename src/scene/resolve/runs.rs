@@ -179,6 +179,7 @@ impl Resolved<'_> {
             of,
             bodies,
             initial,
+            rest: None,
             models,
             recording,
             grips,

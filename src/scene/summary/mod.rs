@@ -2,7 +2,7 @@
 
 mod words;
 
-use super::{Run, Scene, SceneBody};
+use super::{Rest, Run, Scene, SceneBody};
 use crate::reading::captions::{self, description, typed};
 use crate::reading::words::count;
 use crate::sim::geometry::bounds;
@@ -92,6 +92,9 @@ pub struct RunSummary {
     pub tolerance: Option<f64>,
     /// Number of steps up to the last frame.
     pub steps: u64,
+    /// How near to rest it starts. Absent if it does not start at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<Rest>,
     /// The largest stable step (s), at rest; 0 if none is stable. Absent if steps have no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_step: Option<f64>,
@@ -158,6 +161,7 @@ impl Scene {
                 step: run.step,
                 tolerance: run.tolerance,
                 steps: self.frame_step(at, last),
+                rest: run.rest,
                 largest_step: largest.is_finite().then_some(largest),
                 limited_by: limiting.map(str::to_owned),
                 largest_stretched_step: stretched.filter(|limit| limit.is_finite()),

@@ -3,7 +3,7 @@
 use super::{PartSummary, RunSummary, SceneSummary, coordinates};
 use crate::reading::captions::typed;
 use crate::reading::words::{count, ends, list, several, short};
-use crate::scene::{Run, Scene, SceneBody};
+use crate::scene::{Rest, Run, Scene, SceneBody};
 use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape};
 use glam::DVec3;
 use std::fmt;
@@ -254,6 +254,13 @@ impl fmt::Display for SceneSummary {
                 None => format!("ΔT = {step} s = T/{part}, {steps} steps"),
             };
             line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
+            if let Some(Rest { residual, evaluations }) = run.rest {
+                let evaluations = count(evaluations.into());
+                line(
+                    "",
+                    &format!("starts at rest: {residual:.0e} of the load is left after {evaluations} evaluations"),
+                )?;
+            }
             if run.tolerance.is_none() {
                 line("", &run.stability())?;
                 run.rebounds().iter().try_for_each(|text| line("", text))?;

@@ -1,0 +1,59 @@
+//! Runs that start at rest.
+
+use super::{Physics, Typed};
+use crate::reading::collector::{Collector, key_path};
+use crate::reading::words::{quoted, short};
+use crate::scene::file::StartFile;
+use crate::scene::{Rest, Run, SceneBody};
+use crate::sim::{Crew, NoEquilibrium, equilibrium};
+use rayon::prelude::*;
+
+/// Moves the bodies of each run to where they are at rest, if the scene asks for it.
+pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Collector<'_>) {
+    let asked = scene.file.time.as_ref().and_then(|time| time.start);
+    // Without a part that has mistakes, rest would be elsewhere.
+    let (Some(StartFile::Equilibrium), 0) = (asked, report.total()) else { return };
+    let Physics { gravity: Some(gravity), obstacles: Some(obstacles), contacts, bodies, runs: Some(runs), .. } =
+        physics
+    else {
+        return;
+    };
+    let find = |run: &Run| {
+        let surroundings = run.surroundings(*gravity, obstacles, contacts.as_ref());
+        let parts: Vec<_> = run.bodies.bodies().iter().cloned().zip(run.models.iter().map(|model| &**model)).collect();
+        equilibrium(&parts, &run.initial, &surroundings, run.step, Crew::default())
+    };
+    let found: Vec<_> = runs.par_iter().map(|run| run.recording.is_none().then(|| find(run))).collect();
+    for (run, found) in runs.iter_mut().zip(found) {
+        match found {
+            Some(Ok(found)) => {
+                run.rest = Some(Rest { residual: found.residual, evaluations: found.evaluations });
+                run.initial.position = found.position;
+            }
+            Some(Err(why)) => {
+                // Other runs mostly have the same mistake.
+                refuse(run, &why, bodies.as_deref().unwrap_or_default(), report);
+                return;
+            }
+            None => {}
+        }
+    }
+}
+
+/// Reports a run that has no state of rest.
+fn refuse(run: &Run, why: &NoEquilibrium, bodies: &[SceneBody], report: &mut Collector<'_>) {
+    let name = quoted(&run.name);
+    let (why, help) = match *why {
+        NoEquilibrium::Unheld { body, force } => {
+            let body =
+                run.of.get(body).and_then(|&body| bodies.get(body)).map_or("its body".into(), SceneBody::in_words);
+            let force = short(force.length());
+            (format!("nothing holds {body} against {force} N"), "hold nodes with [[hold]], or put an obstacle below it")
+        }
+        NoEquilibrium::Unbalanced { residual, evaluations } => (
+            format!("after {evaluations} evaluations of forces, {residual:.1e} of the load is left"),
+            "hold more nodes, make the load smaller, or remove `start` and let the run come to rest by its damping",
+        ),
+    };
+    report.at(&key_path!["time", "start"], format!("{name} finds no state of rest: {why}"), help);
+}
