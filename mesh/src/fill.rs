@@ -120,15 +120,30 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let (mut surface, flaws) = surface.mended();
     let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
     lattice::check(&surface, fill, side, most)?;
-    if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
+    let is_cut = matches!(fill, Fill::Tetrahedra { .. } | Fill::Polyhedra { .. });
+    if is_cut {
         check_joined(&surface, &flaws)?;
     }
     surface.refine(side, most);
-    let filled = match fill {
-        Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
-        Fill::Graded { side } => cubes::fill(surface, flaws, side, true, most),
-        Fill::Polyhedra { side } => apart::fill(surface, side, most, |part| polyhedra::fill(part, flaws, side, most)),
-        Fill::Tetrahedra { side } => apart::fill(surface, side, most, |part| tetrahedra::fill(part, flaws, side, most)),
+    let alone = |surface, corner| match fill {
+        Fill::Cubes { .. } => cubes::fill(surface, flaws, side, corner, false, most),
+        Fill::Graded { .. } => cubes::fill(surface, flaws, side, corner, true, most),
+        Fill::Polyhedra { .. } => polyhedra::fill(surface, flaws, side, most),
+        Fill::Tetrahedra { .. } => tetrahedra::fill(surface, flaws, side, most),
+    };
+    let parts = if flaws.pieces > 1 { apart::parts(&surface) } else { Ok((Vec::new(), 1)) };
+    let filled = match parts {
+        Ok(parts) if parts.1 > 1 => {
+            let corner = lattice::Lattice::origin(&surface.measures(), side);
+            let part = |part| alone(part, Some(corner)).map(|part| if is_cut { apart::weighed(part) } else { part });
+            match apart::fill(surface.clone(), parts, side, most, part) {
+                // A part may have no inside by itself. Cubes tell in each cell what stands apart.
+                Err(_) if !is_cut => alone(surface, None),
+                filled => filled,
+            }
+        }
+        Err(error) if is_cut => Err(error),
+        _ => alone(surface, None),
     };
     filled.map(Filled::with_groups)
 }

@@ -17,14 +17,11 @@ use robust::{Coord3D, orient3d};
 /// As `fill`, or if all parts together need more than `most` elements of this side.
 pub(super) fn fill(
     mut surface: Surface,
+    (part_of, count): (Vec<u32>, usize),
     side: f64,
     most: usize,
     fill: impl Fn(Surface) -> Result<Filled, FillError> + Sync,
 ) -> Result<Filled, FillError> {
-    let (part_of, count) = parts(&surface)?;
-    if count < 2 {
-        return fill(surface);
-    }
     if count > most {
         return Err(too_many(&surface.measures(), side, count as f64, most, "at least "));
     }
@@ -46,8 +43,6 @@ pub(super) fn fill(
         return Err(too_many(&surface.measures(), side, needed as f64, most, ""));
     }
     let mut whole = Filled { surface: Surface::default(), ..filled[0].clone() };
-    whole.cage.volumes = Some(filled.iter().flat_map(volumes).collect());
-    whole.cage.overlap = filled.iter().map(|part| part.cage.overlap).sum();
     let mut firsts = vec![0];
     for part in &filled[1..] {
         let cage = &mut whole.cage;
@@ -59,6 +54,8 @@ pub(super) fn fill(
         }
         cage.nodes.extend(&part.cage.nodes);
         cage.elements.append(&part.cage.elements, first);
+        cage.volumes.iter_mut().zip(&part.cage.volumes).for_each(|(all, own)| all.extend(own));
+        cage.overlap += part.cage.overlap;
     }
     whole.weights = Default::default();
     for ((&part, &number), point) in part_of.iter().zip(&numbers).zip(&mut surface.points) {
@@ -70,14 +67,15 @@ pub(super) fn fill(
     Ok(Filled { surface, ..whole })
 }
 
-/// The volume of each node of a part (m³), together that inside its surface where this is closed.
-fn volumes(part: &Filled) -> Vec<f64> {
+/// The part with the volume of each node (m³), together that inside its surface where this is closed.
+pub(super) fn weighed(mut part: Filled) -> Filled {
     let (mut volumes, measures) = (node_volumes(&body(&part.cage)), part.surface.measures());
     if measures.closed {
         let found: f64 = volumes.iter().sum();
         volumes.iter_mut().for_each(|volume| *volume *= (measures.volume - part.cage.overlap) / found);
     }
-    volumes
+    part.cage.volumes = Some(volumes);
+    part
 }
 
 /// The part of the surface to which each point belongs, and how many there are: pieces that touch, or lie in the inside of each other,
@@ -86,7 +84,7 @@ fn volumes(part: &Filled) -> Vec<f64> {
 ///
 /// # Errors
 /// If very many pieces lie about each other.
-fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
+pub(super) fn parts(surface: &Surface) -> Result<(Vec<u32>, usize), FillError> {
     let (piece_of, count) = pieces(surface.points.len(), &surface.triangles);
     let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
     for (&piece, &point) in piece_of.iter().zip(&surface.points) {

@@ -15,16 +15,18 @@ use rayon::prelude::*;
 /// Points along each side of a cell at which it is tried whether they are inside, where a surface is open.
 const SAMPLES: usize = 4;
 
+/// Fills a surface with those cubes of a lattice that contain a part of the inside. Parts of a surface have a lattice with one corner.
 pub(super) fn fill(
     mut surface: Surface,
     flaws: Flaws,
     side: f64,
+    shared: Option<DVec3>,
     is_graded: bool,
     most: usize,
 ) -> Result<Filled, FillError> {
     // Many cells are joined if cubes are graded, and cells take less memory than elements.
     let joined = if is_graded { JOINED } else { 1 };
-    let (lattice, scaled) = Lattice::about(&mut surface, side, most)?;
+    let (lattice, scaled) = Lattice::about(&mut surface, side, shared, most)?;
     let mut pieces = clip::pieces(&scaled, &lattice);
     let homes = homes(&scaled, &lattice);
     hold(&mut pieces, &homes, &lattice);

@@ -1,11 +1,13 @@
 //! Where a surface cuts the edges of a lattice.
 
+mod crossing;
+
 use super::parts::{Parted, Scene};
 use super::{FillError, clip, cubes, lattice};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
-use glam::{DVec2, DVec3, IVec3};
-use rayon::prelude::*;
+pub(super) use crossing::Cuts;
+use glam::{DVec3, IVec3};
 
 /// A point outside of all elements follows the nearest one if it is at most so many sides away: beyond, it would only show how
 /// that element turns.
@@ -50,6 +52,8 @@ pub(super) struct Lattice {
     /// The surface in halves of the side, from the origin.
     surface: Surface,
     inside: Inside,
+    /// Where edges cross the surface.
+    crossings: Vec<(u64, f64)>,
 }
 
 impl Lattice {
@@ -58,11 +62,14 @@ impl Lattice {
     /// # Errors
     /// If its triangles lie over each other by thousands.
     pub(super) fn around(surface: &mut Surface, side: f64, has_middles: bool, most: usize) -> Result<Self, FillError> {
-        let (lattice, mut scaled) = lattice::Lattice::about(surface, side, most)?;
+        let (lattice, mut scaled) = lattice::Lattice::about(surface, side, None, most)?;
         let counts = DVec3::from_array(lattice.counts.map(|count| count as f64)) + 2.0;
         scaled.points.iter_mut().for_each(|point| *point = 2.0 * (*point + 1.0));
         let inside = Inside::new(&scaled);
-        Ok(Self { origin: lattice.origin - side, side, cubes: counts.as_ivec3(), has_middles, surface: scaled, inside })
+        let (origin, cubes) = (lattice.origin - side, counts.as_ivec3());
+        let mut lattice = Self { origin, side, cubes, has_middles, surface: scaled, inside, crossings: Vec::new() };
+        lattice.crossings = lattice.all_crossings();
+        Ok(lattice)
     }
 
     /// The ends of the edge of a cut.
@@ -193,70 +200,6 @@ impl Lattice {
         self.cube((0.5 * self.halves(at)).floor().as_ivec3().clamp(IVec3::ZERO, self.cubes - 1))
     }
 
-    /// The cuts of all edges with one end inside, where the surface crosses them first seen from that end. An edge across a hole of
-    /// the surface, which crosses no triangle, is cut in its middle. Edges with an end inside that is wide are cut at
-    /// [`WIDE`]. Without middles, edges with both ends outside are cut where the surface crosses them first and last.
-    pub(super) fn cuts(&self, is_inside: &[bool], is_wide: impl Fn(usize) -> bool) -> Cuts {
-        let edges = self.edges();
-        let crossings = |triangle: &[u32; 3]| {
-            let corners = self.surface.corners(*triangle);
-            let mut found = Vec::new();
-            for edge in 0..edges {
-                self.crossings(corners, edge, is_inside, &mut found);
-            }
-            found
-        };
-        let mut found: Vec<(u64, f64)> = self.surface.triangles.par_iter().flat_map_iter(crossings).collect();
-        found.par_sort_unstable_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
-        let mut cuts = Cuts { edges, ..Cuts::default() };
-        let mut found = found.into_iter().peekable();
-        for index in 0..self.len() {
-            let from = self.point(index);
-            if !self.holds(from) {
-                continue;
-            }
-            let mut ends = [None; AXES];
-            for edge in 0..edges {
-                let to = from + EDGES[edge];
-                let own = slot(index, edge);
-                while found.next_if(|next| next.0 < own).is_some() {}
-                let mut range = None;
-                while let Some((_, next)) = found.next_if(|next| next.0 == own) {
-                    range = Some([range.map_or(next, |[first, _]: [f64; 2]| first), next]);
-                }
-                if !self.holds(to) {
-                    continue;
-                }
-                let mut part = match (range, [index, self.index(to)].map(|end| is_inside[end])) {
-                    (Some([first, last]), [false, false]) => {
-                        ends[edge] = Some(last);
-                        first
-                    }
-                    (_, [one, other]) if one == other => continue,
-                    (range, [is_first, _]) => range.map_or(0.5, |range| range[usize::from(!is_first)]),
-                };
-                let part_wide = WIDE[usize::from(edge >= AXES)];
-                if is_inside[index] && is_wide(index) {
-                    part = part_wide;
-                } else if !is_inside[index] && is_wide(self.index(to)) {
-                    part = 1.0 - part_wide;
-                }
-                cuts.slots.push(own);
-                cuts.parts.push(part);
-            }
-            for (edge, last) in ends.into_iter().enumerate().filter_map(|(edge, last)| Some((edge, last?))) {
-                cuts.slots.push(slot(index, edges + edge));
-                cuts.parts.push(last);
-            }
-            let point = slot(index, EDGES.len());
-            while found.next_if(|next| next.0 < point).is_some() {}
-            if found.next_if(|next| next.0 == point).is_some() {
-                cuts.on.push(index);
-            }
-        }
-        cuts
-    }
-
     /// Places (m) all over a triangle of the surface, so close that they miss only the tips of cells.
     pub(super) fn samples(&self, triangle: [u32; 3]) -> impl Iterator<Item = DVec3> {
         let [a, b, c] = self.surface.corners(triangle);
@@ -319,107 +262,5 @@ impl Lattice {
         let point = self.point(index);
         let around = EDGES[..self.edges()].iter().flat_map(move |&edge| [point - edge, point + edge]);
         around.filter(|&other| self.holds(other)).map(|other| self.index(other))
-    }
-
-    /// Appends the edges of one direction with one end inside that cross a triangle, with the part of the way to the crossing.
-    /// Corners are in halves of the side from the origin.
-    fn crossings(&self, corners: [DVec3; 3], edge: usize, is_inside: &[bool], found: &mut Vec<(u64, f64)>) {
-        // Seen along the edges of this direction, lines are points of a plane with whole coordinates, and `depth` is along them.
-        let direction = EDGES[edge];
-        let (is_axis, slope) = (edge < AXES, direction.as_dvec3());
-        let seen = |at: DVec3| match edge {
-            0 => (at.x, DVec2::new(at.y, at.z)),
-            1 => (at.y, DVec2::new(at.z, at.x)),
-            2 => (at.z, DVec2::new(at.x, at.y)),
-            _ => (at.x, DVec2::new(at.y - slope.y * at.x, at.z - slope.z * at.x)),
-        };
-        let [(depth_a, a), (depth_b, b), (depth_c, c)] = corners.map(seen);
-        let area = (b - a).perp_dot(c - a);
-        if area == 0.0 {
-            return;
-        }
-        let low = (a.min(b).min(c) - CLOSE).ceil().as_ivec2();
-        let high = (a.max(b).max(c) + CLOSE).floor().as_ivec2();
-        let [near, far] = [depth_a.min(depth_b).min(depth_c), depth_a.max(depth_b).max(depth_c)];
-        let step = if is_axis { 2 } else { 1 };
-        for u in low.x..=high.x {
-            // Middles are on lines along the axes with odd coordinates, and all other lines have even ones.
-            let is_odd = u % 2 != 0;
-            if is_odd && !(is_axis && self.has_middles) {
-                continue;
-            }
-            let first = low.y + i32::from((low.y % 2 != 0) != is_odd);
-            for v in (first..=high.y).step_by(2) {
-                let line = DVec2::new(f64::from(u), f64::from(v));
-                let across = |from: DVec2, to: DVec2| {
-                    let twice = (to - from).perp_dot(line - from) * area.signum();
-                    (twice >= -CLOSE * (to - from).length()).then_some(twice / area.abs())
-                };
-                let (Some(of_a), Some(of_b), Some(of_c)) = (across(b, c), across(c, a), across(a, b)) else { continue };
-                let depth = (of_a * depth_a + of_b * depth_b + of_c * depth_c).clamp(near, far);
-                // The first point of the lattice on the line has the depth 0 or 1.
-                let start = if is_axis { i32::from(is_odd) } else { 0 };
-                let steps = (depth - f64::from(start)) / f64::from(step);
-                let [lowest, highest] = [steps - CLOSE, steps + CLOSE].map(|steps| steps.floor() as i32);
-                for at in lowest..=highest {
-                    let depth = start + step * at;
-                    let from = match edge {
-                        0 => IVec3::new(depth, u, v),
-                        1 => IVec3::new(v, depth, u),
-                        2 => IVec3::new(u, v, depth),
-                        _ => IVec3::new(depth, u + direction.y * depth, v + direction.z * depth),
-                    };
-                    if !(self.holds(from) && self.holds(from + direction)) {
-                        continue;
-                    }
-                    let index = self.index(from);
-                    if lowest < highest && at == highest {
-                        found.push((slot(index, EDGES.len()), 0.0));
-                    }
-                    let ends = [index, self.index(from + direction)].map(|end| is_inside[end]);
-                    if ends[0] != ends[1] || !(ends[0] || self.has_middles) {
-                        found.push((slot(index, edge), (steps - f64::from(at)).clamp(0.0, 1.0)));
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// The numbers of the edges that start at each point of the lattice, and one for the point itself.
-const SLOTS: usize = EDGES.len() + 1;
-
-/// The number of an edge that starts at a point of the lattice, or, with the number of edges, of the point.
-fn slot(index: usize, edge: usize) -> u64 {
-    (index * SLOTS + edge) as u64
-}
-
-/// Cuts of edges by a surface, in the order of the points of the lattice at which the edges start, then of [`EDGES`].
-#[derive(Clone, Debug, Default)]
-pub(super) struct Cuts {
-    slots: Vec<u64>,
-    /// The number of edges from each point of the lattice.
-    edges: usize,
-    /// The part of the way along the edge, from 0 to 1.
-    pub(super) parts: Vec<f64>,
-    /// The points of the lattice that are on the surface to round-off, in rising order.
-    pub(super) on: Vec<usize>,
-}
-
-impl Cuts {
-    /// The cut of an edge, by its start; the first one of an edge with both ends outside.
-    pub(super) fn find(&self, index: usize, edge: usize) -> Option<usize> {
-        self.slots.binary_search(&slot(index, edge)).ok()
-    }
-
-    /// The last cut of an edge with both ends outside.
-    pub(super) fn last(&self, index: usize, edge: usize) -> Option<usize> {
-        self.find(index, self.edges + edge)
-    }
-
-    /// The start of the edge of a cut, by its place in lists, and the direction of the edge.
-    pub(super) fn edge(&self, cut: usize) -> (usize, usize) {
-        let slot = self.slots[cut] as usize;
-        (slot / SLOTS, slot % SLOTS % self.edges)
     }
 }

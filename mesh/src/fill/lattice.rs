@@ -72,7 +72,7 @@ pub(super) fn check(surface: &Surface, fill: Fill, side: f64, most: usize) -> Re
 /// About how many cubes are joined on average if they are graded.
 pub(super) const JOINED: usize = 4;
 
-/// A lattice of cubes about the middle of a surface's box.
+/// Cubes of a lattice about a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lattice {
     /// The lowest corner.
@@ -84,14 +84,30 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice for a surface that is checked, and the surface in units of the lattice. Points that are almost on a plane of
-    /// the lattice are on it in both.
+    /// The lowest corner of a lattice about the middle of a surface's box.
+    pub(super) fn origin(measures: &Measures, side: f64) -> DVec3 {
+        let size = DVec3::from_array(counts(measures, side));
+        0.5 * (measures.low + measures.high) - 0.5 * side * size
+    }
+
+    /// The cubes about a surface that is checked, and the surface in units of them from their lowest corner. Points that are almost on a
+    /// plane of the lattice are on it in both. The lattice is about the middle of the surface, or has a given corner.
     ///
     /// # Errors
     /// If its triangles lie over each other by thousands.
-    pub(super) fn about(surface: &mut Surface, side: f64, most: usize) -> Result<(Self, Surface), FillError> {
+    pub(super) fn about(
+        surface: &mut Surface,
+        side: f64,
+        corner: Option<DVec3>,
+        most: usize,
+    ) -> Result<(Self, Surface), FillError> {
         let measures = surface.measures();
-        let counts = counts(&measures, side);
+        let (mut origin, mut size) = (Self::origin(&measures, side), DVec3::from_array(counts(&measures, side)));
+        if let Some(corner) = corner {
+            let first = ((measures.low - corner) / side + SNAP).floor();
+            size = (((measures.high - corner) / side - SNAP).ceil() - first).max(DVec3::ONE);
+            origin = corner + side * first;
+        }
         // Triangles that lie over each other by thousands are no surface.
         let overlaps: f64 = surface.triangles.iter().map(|&triangle| pieces(surface.corners(triangle), side)).sum();
         if overlaps > 64.0 * most as f64 + 16.0 * surface.triangles.len() as f64 + 1e6 {
@@ -101,9 +117,8 @@ impl Lattice {
             );
             return Err(FillError::new(message, format!("use a larger side, or more than {most} elements")));
         }
-        let counts = counts.map(|count| count as usize);
-        let size = DVec3::from_array(counts.map(|count| count as f64));
-        let lattice = Self { origin: 0.5 * (measures.low + measures.high) - 0.5 * side * size, side, counts };
+        let counts = size.to_array().map(|count| count as usize);
+        let lattice = Self { origin, side, counts };
         let mut points = Vec::with_capacity(surface.points.len());
         for point in &mut surface.points {
             let at = (*point - lattice.origin) / side;
