@@ -5,6 +5,7 @@
 
 mod abaqus;
 mod arrays;
+mod builder;
 mod cells;
 mod content;
 mod copies;
@@ -12,6 +13,7 @@ mod gltf;
 mod gmsh;
 mod kinds;
 mod medit;
+mod meshing;
 mod obj;
 mod off;
 mod order;
@@ -22,13 +24,14 @@ mod pvd;
 mod source;
 mod stl;
 mod tags;
+mod used;
 mod vtk;
 mod vtu;
 
-pub(crate) use cells::Used;
 pub use cells::{CellKind, Cells};
 pub use others::converter;
 pub use pvd::{Listed, read_list, read_pieces};
+pub(crate) use used::Used;
 
 use super::{Surface, Volume};
 

@@ -1,12 +1,16 @@
 //! Input files of Abaqus and CalculiX (`.inp`): nodes, elements, and sets of both
 //! (<https://abaqus-docs.mit.edu/2017/English/SIMACAEKEYRefMap/simakey-c-intro.htm>, <https://www.calculix.de>).
 
-use super::cells::{self, Builder};
+mod keyword;
+mod sets;
+
+use super::builder::{self, Builder};
 use super::gmsh::Kind;
-use super::source::{DAMAGED, Scalar, Source, quoted};
+use super::source::{DAMAGED, Scalar, Source};
 use super::tags::Tags;
 use super::{Cells, Format, Limits, ReadError, content};
-use std::collections::{BTreeMap, HashMap};
+use keyword::Keyword;
+use std::collections::BTreeMap;
 
 struct Reader<'b, 'l> {
     source: Source<'b>,
@@ -75,46 +79,6 @@ fn integer(field: Source<'_>, expected: &str) -> Result<i64, ReadError> {
 /// Letters as they are compared.
 fn capitals(text: &str) -> String {
     text.split_whitespace().collect::<String>().to_uppercase()
-}
-
-struct Keyword<'b> {
-    line: Source<'b>,
-    /// Its name in capitals.
-    name: String,
-    /// The names of its parameters in capitals, and their values as typed.
-    parameters: HashMap<String, String>,
-}
-
-impl<'b> Keyword<'b> {
-    /// The keyword in a line and in those that continue it.
-    fn new(line: Source<'b>, source: &mut Source<'b>) -> Self {
-        let words = |line: &Source<'_>| String::from_utf8_lossy(line.rest().trim_ascii()).into_owned();
-        let mut text = words(&line);
-        while let Some(more) = text.ends_with(',').then(|| data(source)).flatten() {
-            text += &words(&more);
-        }
-        let mut parts = text[1..].split(',');
-        let name = capitals(parts.next().unwrap_or_default());
-        let parameter = |part: &str| {
-            let (name, value) = part.split_once('=').unwrap_or((part, ""));
-            (capitals(name), value.trim().trim_matches('"').to_owned())
-        };
-        Self { line, name, parameters: parts.map(parameter).collect() }
-    }
-
-    fn get(&self, parameter: &str) -> Option<&str> {
-        self.parameters.get(parameter).map(|value| &**value)
-    }
-
-    /// The value of a parameter that it needs.
-    fn needed(&self, parameter: &str) -> Result<&str, ReadError> {
-        let found = self.get(parameter).filter(|value| !value.is_empty());
-        found.ok_or_else(|| self.wrong(&format!("the keyword with `{parameter}`")))
-    }
-
-    fn wrong(&self, expected: &str) -> ReadError {
-        self.line.found(&format!("*{}", self.name), self.line.at, expected)
-    }
 }
 
 impl Reader<'_, '_> {
@@ -240,52 +204,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn set(&mut self, kind: usize, keyword: &Keyword<'_>) -> Result<(), ReadError> {
-        let name = keyword.needed(["NSET", "ELSET"][kind])?;
-        let missing = |what: &str, name: &str, field: &Source<'_>| {
-            let (name, place) = (quoted(name.as_bytes()), field.place(field.at));
-            ReadError::new(format!("names the {what} {name} {place}, which it does not have before"), DAMAGED)
-        };
-        let set = |kind: usize, name: &str, field: &Source<'_>| {
-            let found = self.sets[kind].get(&capitals(name));
-            found.map(|(_, members)| members).ok_or_else(|| missing("set", name, field))
-        };
-        let mut members = Vec::new();
-        if let (NODES, Some(elements)) = (kind, keyword.get("ELSET")) {
-            let elements = set(ELEMENTS, elements, &keyword.line)?;
-            let corners = &self.builder.cells.corners;
-            let count = elements.iter().map(|&element| corners[element as usize].len()).sum();
-            cells::spend(&mut self.spent, count, self.limits)?;
-            members.extend(elements.iter().flat_map(|&element| &corners[element as usize]));
-        }
-        while let Some(line) = data(&mut self.source) {
-            if keyword.parameters.contains_key("GENERATE") {
-                let [from, more, step] = generated(&line)?;
-                cells::spend(&mut self.spent, usize::try_from(more).unwrap_or(usize::MAX), self.limits)?;
-                members.extend((0..=more).filter_map(|at| self.tags[kind].get(from + at * step)));
-                continue;
-            }
-            for (_, field) in line.fields() {
-                let word = String::from_utf8_lossy(field.rest().trim_ascii());
-                match word.parse().map(|number| self.tags[kind].get(number)) {
-                    Err(_) => {
-                        let others = set(kind, word.trim_matches('"'), &field)?;
-                        cells::spend(&mut self.spent, others.len(), self.limits)?;
-                        members.extend(others);
-                    }
-                    // Its type may be one that is not read.
-                    Ok(None) if kind == ELEMENTS && !self.skipped.is_empty() => {}
-                    Ok(None) => return Err(missing(["node", "element"][kind], &word, &field)),
-                    Ok(Some(member)) => members.push(member),
-                }
-            }
-        }
-        members.sort_unstable();
-        members.dedup();
-        self.add(kind, Some(name), members);
-        Ok(())
-    }
-
     fn finish(mut self) -> Result<Cells, ReadError> {
         if !self.skipped.is_empty() {
             let all = self.skipped.iter().take(8).map(|(name, count)| format!("{count} of the type {name}"));
@@ -310,23 +228,12 @@ impl Reader<'_, '_> {
             if !nodes.contains_key(&key) {
                 let corners = members.iter().flat_map(|&member| &self.builder.cells.corners[member as usize]);
                 let points: Vec<u32> = corners.copied().collect();
-                cells::spend(&mut self.spent, points.len(), self.limits)?;
+                builder::spend(&mut self.spent, points.len(), self.limits)?;
                 self.builder.group(name, points);
             }
         }
         nodes.into_values().for_each(|(name, members)| self.builder.group(name, members));
         self.builder.finish(&self.source, 1)
-    }
-}
-
-/// The first number of a range, how many steps follow, and the step.
-fn generated(line: &Source<'_>) -> Result<[i64; 3], ReadError> {
-    let expected = "a first number, a last one and a step";
-    let numbers: Vec<i64> = line.fields().map(|(_, field)| integer(field, expected)).collect::<Result<_, _>>()?;
-    match numbers[..] {
-        [from, to] if from <= to => Ok([from, to.saturating_sub(from), 1]),
-        [from, to, step] if from <= to && step > 0 => Ok([from, to.saturating_sub(from) / step, step]),
-        _ => Err(line.found(&String::from_utf8_lossy(line.rest().trim_ascii()), line.at, expected)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The arrays of points and cells of VTK's files that are read: velocities, displacements, and what tells ghosts.
 
 use super::ReadError;
-use super::cells::Ghost;
+use super::builder::Ghost;
 use super::source::{DAMAGED, quoted};
 
 /// Velocities of points.

@@ -4,7 +4,7 @@
 mod data;
 mod document;
 
-use super::cells::Builder;
+use super::builder::Builder;
 use super::source::Source;
 use super::{Beside, Cells, Limits, ReadError};
 use data::Lists;

@@ -2,10 +2,14 @@
 //!
 //! Named or numbered physical groups become groups of points. Of elements of higher order the corners are read, which Gmsh lists first.
 
-use super::cells::{Builder, CellKind};
+mod kind;
+mod old;
+
+use super::builder::Builder;
 use super::source::{Coding, DAMAGED, Scalar, Source, quoted};
 use super::tags::Tags;
 use super::{Cells, Format, Limits, ReadError, content};
+pub(super) use kind::Kind;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -192,20 +196,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn old_nodes(&mut self) -> Result<(), ReadError> {
-        let count = self.source.count(Scalar::I32, "the number of nodes")?;
-        self.builder.expect(count, 0)?;
-        self.source.line();
-        self.source.coding = self.coding;
-        for _ in 0..count {
-            let tag = self.int("the number of a node")?;
-            let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
-            self.tags.push(tag, self.builder.point_at(point, at)?);
-        }
-        self.source.coding = Coding::Text;
-        Ok(())
-    }
-
     fn elements(&mut self) -> Result<(), ReadError> {
         let blocks = self.count("the number of blocks of elements")?;
         self.count("the number of elements")?;
@@ -223,41 +213,6 @@ impl Reader<'_, '_> {
                 self.element(kind, self.size, dimension, &groups)?;
             }
         }
-        Ok(())
-    }
-
-    fn old_elements(&mut self) -> Result<(), ReadError> {
-        let count = self.source.count(Scalar::I32, "the number of elements")?;
-        self.source.line();
-        self.source.coding = self.coding;
-        let mut done = 0;
-        while done < count {
-            // In binary files, elements of one type with one number of tags stand together.
-            let is_text = self.coding == Coding::Text;
-            if is_text {
-                self.int("the number of an element")?;
-            }
-            let start = self.source.at;
-            let number = self.int("the type of an element")?;
-            let kind = self.kind(number, start)?;
-            let together = if is_text { 1 } else { self.source.count(Scalar::I32, "a number of elements")?.max(1) };
-            let tags = self.source.count(Scalar::I32, "the number of tags")?;
-            for _ in 0..together {
-                if !is_text {
-                    self.int("the number of an element")?;
-                }
-                // The first tag is the physical group.
-                let mut physical = 0;
-                for at in 0..tags {
-                    let tag = self.int("a tag")?;
-                    physical = if at == 0 { tag.saturating_abs() } else { physical };
-                }
-                let groups = if physical == 0 { &[][..] } else { &[physical] };
-                self.element(kind, Scalar::I32, kind.dimension, groups)?;
-            }
-            done += together;
-        }
-        self.source.coding = Coding::Text;
         Ok(())
     }
 
@@ -284,48 +239,5 @@ impl Reader<'_, '_> {
             self.builder.number((dimension, group), corners)?;
         }
         self.builder.around(kind.cell, corners)
-    }
-}
-
-/// A type of elements.
-#[derive(Clone, Copy)]
-pub(super) struct Kind {
-    pub(super) cell: CellKind,
-    pub(super) dimension: i64,
-    /// The number of its corners, which are the first of its nodes.
-    pub(super) corners: usize,
-    pub(super) nodes: usize,
-}
-
-impl Kind {
-    /// The type of a number in Gmsh.
-    pub(super) fn of(number: i64) -> Option<Self> {
-        use CellKind::{Hexahedron, Line, Point, Polygon, Pyramid, Tetrahedron, Wedge};
-        const NODES: [usize; 31] = [
-            2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56,
-        ];
-        let (cell, dimension, corners) = match number {
-            15 => (Point, 0, 1),
-            1 | 8 | 26..=28 => (Line, 1, 2),
-            2 | 9 | 20..=25 => (Polygon, 2, 3),
-            3 | 10 | 16 | 36..=38 => (Polygon, 2, 4),
-            4 | 11 | 29..=31 => (Tetrahedron, 3, 4),
-            5 | 12 | 17 | 92 | 93 => (Hexahedron, 3, 8),
-            6 | 13 | 18 | 90 | 91 => (Wedge, 3, 6),
-            7 | 14 | 19 | 118 => (Pyramid, 3, 5),
-            _ => return None,
-        };
-        let nodes = match number {
-            36..=38 => [16, 25, 36][number as usize - 36],
-            90..=93 => [40, 75, 64, 125][number as usize - 90],
-            118 => 30,
-            _ => NODES[number as usize - 1],
-        };
-        Some(Self { cell, dimension, corners, nodes })
-    }
-
-    /// The type of first or second order with these numbers.
-    pub(super) fn with(dimension: i64, nodes: usize) -> Option<Self> {
-        (1..20).filter_map(Self::of).find(|kind| (kind.dimension, kind.nodes) == (dimension, nodes))
     }
 }

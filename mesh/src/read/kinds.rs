@@ -1,7 +1,8 @@
 //! The types of cells of VTK, in its files of both formats (`vtkCellType.h`).
 
+use super::CellKind;
 use super::ReadError;
-use super::cells::{Builder, CellKind};
+use super::builder::Builder;
 use super::source::DAMAGED;
 
 /// Adds a cell of a type. Of cells of higher order the corners are taken, which VTK lists first.

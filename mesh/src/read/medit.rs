@@ -2,7 +2,7 @@
 //!
 //! References other than 0 are numbers of groups. Of elements of second order the corners are read, which stand first.
 
-use super::cells::Builder;
+use super::builder::Builder;
 use super::gmsh::Kind;
 use super::source::{Scalar, Source, quoted};
 use super::{Cells, Format, Limits, ReadError, content};

@@ -1,7 +1,7 @@
 //! Wavefront: points and polygons, one a line. Names of groups, objects and materials become groups of points. Textures, normals, lines
 //! and free-form curves are left out.
 
-use super::cells::Builder;
+use super::builder::Builder;
 use super::source::{Scalar, Source, integer};
 use super::{Cells, Limits, ReadError};
 

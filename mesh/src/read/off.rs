@@ -1,6 +1,6 @@
 //! Object File Format: a header, numbers of points and faces, and one line for each (<http://www.geomview.org/docs/html/OFF.html>).
 
-use super::cells::Builder;
+use super::builder::Builder;
 use super::source::{Scalar, Source};
 use super::{Cells, Format, Limits, ReadError, content};
 

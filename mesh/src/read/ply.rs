@@ -1,7 +1,7 @@
 //! Stanford triangles: a header that lists elements and their properties, and then their values as text or binary numbers
 //! (<http://paulbourke.net/dataformats/ply/>).
 
-use super::cells::Builder;
+use super::builder::Builder;
 use super::source::{Coding, DAMAGED, Scalar, Source, quoted};
 use super::{Cells, Format, Limits, ReadError, content};
 use glam::DVec3;

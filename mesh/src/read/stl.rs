@@ -1,6 +1,6 @@
 //! Stereolithography: triangles, each with its own corners, which are welded here where they are equal.
 
-use super::cells::Builder;
+use super::builder::Builder;
 use super::source::{CUT, Coding, DAMAGED, Scalar, Source};
 use super::{Cells, Format, Limits, ReadError, content};
 use glam::DVec3;

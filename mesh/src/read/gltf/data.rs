@@ -1,6 +1,6 @@
 //! The buffers of a glTF file, and the lists of numbers in them.
 
-use super::super::cells::too_many;
+use super::super::builder::too_many;
 use super::super::source::{CUT, quoted};
 use super::super::{Beside, Limits, ReadError};
 use base64::Engine;

@@ -1,0 +1,46 @@
+//! Keywords and their parameters.
+
+use super::{capitals, data};
+use crate::read::ReadError;
+use crate::read::source::Source;
+use std::collections::HashMap;
+
+pub(super) struct Keyword<'b> {
+    pub(super) line: Source<'b>,
+    /// Its name in capitals.
+    pub(super) name: String,
+    /// The names of its parameters in capitals, and their values as typed.
+    pub(super) parameters: HashMap<String, String>,
+}
+
+impl<'b> Keyword<'b> {
+    /// The keyword in a line and in those that continue it.
+    pub(super) fn new(line: Source<'b>, source: &mut Source<'b>) -> Self {
+        let words = |line: &Source<'_>| String::from_utf8_lossy(line.rest().trim_ascii()).into_owned();
+        let mut text = words(&line);
+        while let Some(more) = text.ends_with(',').then(|| data(source)).flatten() {
+            text += &words(&more);
+        }
+        let mut parts = text[1..].split(',');
+        let name = capitals(parts.next().unwrap_or_default());
+        let parameter = |part: &str| {
+            let (name, value) = part.split_once('=').unwrap_or((part, ""));
+            (capitals(name), value.trim().trim_matches('"').to_owned())
+        };
+        Self { line, name, parameters: parts.map(parameter).collect() }
+    }
+
+    pub(super) fn get(&self, parameter: &str) -> Option<&str> {
+        self.parameters.get(parameter).map(|value| &**value)
+    }
+
+    /// The value of a parameter that it needs.
+    pub(super) fn needed(&self, parameter: &str) -> Result<&str, ReadError> {
+        let found = self.get(parameter).filter(|value| !value.is_empty());
+        found.ok_or_else(|| self.wrong(&format!("the keyword with `{parameter}`")))
+    }
+
+    pub(super) fn wrong(&self, expected: &str) -> ReadError {
+        self.line.found(&format!("*{}", self.name), self.line.at, expected)
+    }
+}

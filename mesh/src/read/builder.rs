@@ -1,0 +1,217 @@
+//! Points and cells while a file is read.
+
+mod finish;
+
+use super::order::along;
+use super::source::Source;
+use super::{CellKind, Cells, Limits, ReadError};
+use glam::DVec3;
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+/// What VTK tells of a point or a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Ghost {
+    /// It is one of this piece.
+    #[default]
+    None,
+    /// It is a copy of one in another piece.
+    Copy,
+    /// It is no part of the body.
+    Hidden,
+}
+
+/// A dimension and the number of a set of points.
+type Key = (i64, i64);
+
+/// Cells while they are read.
+#[derive(Debug)]
+pub(super) struct Builder<'l> {
+    pub(super) cells: Cells,
+    /// What VTK tells of the first points and cells.
+    ghosts: [Vec<Ghost>; 2],
+    groups: BTreeMap<String, Vec<u32>>,
+    /// Sets of points by their numbers, and the names of some of them.
+    numbered: BTreeMap<Key, Vec<u32>>,
+    pub(super) set_names: HashMap<Key, String>,
+    /// The number of points in all sets.
+    grouped: usize,
+    limits: &'l Limits,
+    /// Whether cells of higher order gave their corners only.
+    pub(super) is_curved: bool,
+    /// The highest index of a corner, and the place where it was found. Points may follow the cells that name them.
+    highest: (u32, usize),
+    /// The points without coordinates, and the places where they were found.
+    lost: Vec<(u32, usize)>,
+    /// The names of cells from now on, of three kinds, and the first cell that has them.
+    names: [(Vec<String>, usize); 3],
+    /// The cells of each name.
+    named: BTreeMap<String, Vec<Range<usize>>>,
+}
+
+impl<'l> Builder<'l> {
+    pub(super) fn new(limits: &'l Limits) -> Self {
+        let (cells, ghosts, groups, numbered, set_names, grouped) = Default::default();
+        let (is_curved, highest, lost, names, named) = Default::default();
+        Self { cells, ghosts, groups, numbered, set_names, grouped, limits, is_curved, highest, lost, names, named }
+    }
+
+    pub(super) fn points(&self) -> usize {
+        self.cells.points.len()
+    }
+
+    /// Whether there are no cells so far.
+    pub(super) fn is_empty(&self) -> bool {
+        self.cells.kinds.is_empty()
+    }
+
+    /// Refuses numbers of points and cells beyond the limits, before they are read.
+    pub(super) fn expect(&self, points: u64, cells: u64) -> Result<(), ReadError> {
+        for (count, most, what) in [(points, self.limits.points, "points"), (cells, self.limits.corners / 3, "cells")] {
+            if count > most as u64 {
+                return Err(too_many(&count.to_string(), what, most));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a point, and returns its index.
+    pub(super) fn point(&mut self, point: DVec3) -> Result<u32, ReadError> {
+        /// Coordinates beyond this are not lengths, and products of them would overflow.
+        const FAR: f64 = 1e100;
+        let index = self.cells.points.len();
+        if !(point.abs().max_element() <= FAR && point.is_finite()) {
+            let [x, y, z] = point.to_array();
+            let message = format!("has point {index} at [{x:?}, {y:?}, {z:?}]; expected coordinates up to 1e100");
+            return Err(ReadError::damaged(message));
+        }
+        let most = self.limits.points.min(u32::MAX as usize - 1);
+        if index >= most {
+            return Err(too_many(&format!("more than {most}"), "points", most));
+        }
+        self.cells.points.push(point);
+        Ok(index as u32)
+    }
+
+    /// Adds a point that was found at a place. Programs write some that no cell names without coordinates: those are left out.
+    pub(super) fn point_at(&mut self, point: DVec3, at: usize) -> Result<u32, ReadError> {
+        if point.is_finite() {
+            return self.point(point);
+        }
+        self.lost.push((self.points() as u32, at));
+        self.point(DVec3::ZERO)
+    }
+
+    /// The index of a point, counted from 0, that was found at a place.
+    pub(super) fn corner(&mut self, index: i64, at: usize, source: &Source<'_>) -> Result<u32, ReadError> {
+        let corner = u32::try_from(index)
+            .map_err(|_| ReadError::damaged(format!("names a point that it does not have {}", source.place(at))))?;
+        if corner > self.highest.0 {
+            self.highest = (corner, at);
+        }
+        Ok(corner)
+    }
+
+    pub(super) fn cell(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
+        let most = self.limits.corners.min(u32::MAX as usize - 1);
+        if corners.is_empty() {
+            return Ok(());
+        }
+        if self.cells.corners.indices().len() + corners.len() > most {
+            return Err(too_many(&format!("more than {most}"), "corners", most));
+        }
+        self.cells.kinds.push(kind);
+        self.cells.corners.push(corners);
+        Ok(())
+    }
+
+    /// Adds a cell whose corners, if it is a hexahedron, are listed around one side and then around the other.
+    pub(super) fn around(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
+        match *corners {
+            [a, b, c, d, e, f, g, h] if kind == CellKind::Hexahedron => {
+                self.cell(kind, &along(&[a, b, c, d, e, f, g, h]))
+            }
+            _ => self.cell(kind, corners),
+        }
+    }
+
+    /// Adds a polygon, or what is left of one with less than three corners.
+    pub(super) fn face(&mut self, corners: &[u32]) -> Result<(), ReadError> {
+        match corners.len() {
+            0 => Ok(()),
+            1 => self.cell(CellKind::Point, corners),
+            2 => self.cell(CellKind::Line, corners),
+            _ => self.cell(CellKind::Polygon, corners),
+        }
+    }
+
+    pub(super) fn strip(&mut self, corners: &[u32]) -> Result<(), ReadError> {
+        for (at, triangle) in corners.windows(3).enumerate() {
+            let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
+            self.face(&if at.is_multiple_of(2) { [a, b, c] } else { [b, a, c] })?;
+        }
+        Ok(())
+    }
+
+    /// Adds the velocities of the next points.
+    pub(super) fn velocities(&mut self, velocities: Vec<DVec3>) {
+        self.cells.velocities.get_or_insert_default().extend(velocities);
+    }
+
+    /// Adds the displacements of the next points.
+    pub(super) fn displacements(&mut self, displacements: Vec<DVec3>) {
+        self.cells.displacements.get_or_insert_default().extend(displacements);
+    }
+
+    /// Adds points to the set of this name.
+    pub(super) fn group(&mut self, name: String, points: Vec<u32>) {
+        self.groups.entry(name).or_default().extend(points);
+    }
+
+    /// Adds points to the set of a number, which names it unless `set_names` does.
+    pub(super) fn number(&mut self, set: Key, points: &[u32]) -> Result<(), ReadError> {
+        spend(&mut self.grouped, points.len(), self.limits)?;
+        self.numbered.entry(set).or_default().extend(points);
+        Ok(())
+    }
+
+    /// Gives cells from now on other names of a kind, 0 to 2. Their points become groups.
+    pub(super) fn name(&mut self, kind: usize, names: Vec<String>) {
+        let now = self.cells.kinds.len();
+        let (before, start) = std::mem::replace(&mut self.names[kind], (names, now));
+        for name in before.into_iter().filter(|name| start < now && !name.is_empty()) {
+            self.named.entry(name).or_default().push(start..now);
+        }
+    }
+
+    /// Tells what the points from an index on are.
+    pub(super) fn ghosts(&mut self, from: usize, ghosts: Vec<Ghost>) {
+        self.ghosts[0].resize(from, Ghost::None);
+        self.ghosts[0].extend(ghosts);
+    }
+
+    /// Tells what cells of the file are, if anything, by the first cell that each became.
+    pub(super) fn ghosts_of_cells(&mut self, starts: &[usize], ghosts: &[Ghost]) {
+        let ends = starts.iter().skip(1).copied().chain([self.cells.kinds.len()]);
+        for ((&start, end), &ghost) in starts.iter().zip(ends).zip(ghosts) {
+            self.ghosts[1].resize(start, Ghost::None);
+            self.ghosts[1].resize(end, ghost);
+        }
+    }
+}
+
+/// Refuses sets with very many members.
+pub(super) fn spend(spent: &mut usize, members: usize, limits: &Limits) -> Result<(), ReadError> {
+    let most = limits.corners.saturating_mul(4);
+    *spent = spent.saturating_add(members);
+    if *spent > most {
+        let message = format!("has groups with more than {most} nodes");
+        return Err(ReadError::new(message, "put each element into one group or few"));
+    }
+    Ok(())
+}
+
+pub(super) fn too_many(found: &str, what: &str, most: usize) -> ReadError {
+    let message = format!("has {found} {what}; at most {most} are read");
+    ReadError::new(message, "make the mesh coarser, with a decimation of the program that wrote it")
+}
