@@ -8,6 +8,11 @@ pub(crate) fn of_elements(body: &Body) -> Option<Vec<f64>> {
     product(body.fill.as_deref(), body.stiffness.as_deref())
 }
 
+/// The filled part of each element times the relative modulus of its material, for models that know its size; `None` if all are 1.
+pub(crate) fn of_materials(body: &Body) -> Option<Vec<f64>> {
+    product(body.fill.as_deref(), body.modulus.as_deref())
+}
+
 /// The products of two factors of each element, either of which is 1 if it is not given; `None` if neither is.
 pub(crate) fn product(one: Option<&[f64]>, other: Option<&[f64]>) -> Option<Vec<f64>> {
     match (one, other) {

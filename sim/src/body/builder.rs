@@ -3,6 +3,7 @@
 use super::{Body, looks_out};
 use crate::carried::Carried;
 use crate::element::{Dimension, Solids, kind};
+use crate::fill;
 use crate::hull::Hulls;
 use crate::lists::IndexLists;
 use crate::topology::{Elements, assign_faces};
@@ -145,7 +146,7 @@ impl NewBody {
         };
         let mass = vec![1.0; rest.len()];
         let body =
-            Body { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, stiffness: None, carried: None };
+            Body { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, stiffness: None, modulus: None, carried: None };
         let body = if let Some(masses) = masses { body.with_masses(masses)? } else { body };
         body.with_fill(fill)?.with_stiffness(stiffness)?.with_carried(carried)
     }
@@ -233,6 +234,18 @@ impl Body {
             check_values(names, stiffness, self.elements.len(), range)?;
         }
         Ok(Self { stiffness, ..self })
+    }
+
+    /// The same body of several materials: the modulus and the damping of the material of each element, relative to those of the model. The
+    /// [relative stiffness](Self::stiffness) is multiplied by it.
+    ///
+    /// # Errors
+    /// Not one modulus for each element, or one that is not above 0.
+    pub fn with_modulus(self, modulus: Vec<f64>) -> Result<Self, BodyError> {
+        let names = ["relative modulus", "relative moduli", "element", "elements"];
+        check_values(names, &modulus, self.elements.len(), POSITIVE)?;
+        let stiffness = fill::product(self.stiffness.as_deref(), Some(&modulus));
+        Ok(Self { modulus: Some(modulus), stiffness, ..self })
     }
 
     /// The same body with a fine surface that it carries, or none.

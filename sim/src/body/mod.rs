@@ -39,6 +39,7 @@ pub struct Body {
     pub(crate) faces: Faces,
     pub(crate) fill: Option<Vec<f64>>,
     pub(crate) stiffness: Option<Vec<f64>>,
+    pub(crate) modulus: Option<Vec<f64>>,
     pub(crate) carried: Option<Arc<Carried>>,
 }
 
@@ -93,6 +94,11 @@ impl Body {
         self.stiffness.as_deref()
     }
 
+    /// The relative modulus of each element; `None` if all are 1. See [`Self::with_modulus`].
+    pub fn modulus(&self) -> Option<&[f64]> {
+        self.modulus.as_deref()
+    }
+
     /// The fine surface that the body carries.
     pub fn carried(&self) -> Option<&Arc<Carried>> {
         self.carried.as_ref()
@@ -116,6 +122,7 @@ impl Body {
             };
             whole.fill = joined([&whole.fill, &body.fill]);
             whole.stiffness = joined([&whole.stiffness, &body.stiffness]);
+            whole.modulus = joined([&whole.modulus, &body.modulus]);
             whole.carried = None;
             assert_eq!(whole.dimension, body.dimension, "bodies of one dimension");
             let (node, element) = (whole.len() as u32, whole.elements.len() as u32);

@@ -32,6 +32,7 @@ use super::continuum::of_material;
 use super::{ElasticModel, ForceModel, Misfit, Properties, Setting, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
+use crate::fill;
 use crate::kernel::rotation::cross;
 use crate::lanes::{Lanes, each};
 use crate::law::{ByLaw, Corners, Element, Law, Rigid, off};
@@ -191,7 +192,7 @@ impl Law for Metric {
 
     /// The moduli of a material do not depend on the elements.
     fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
-        body.fill.clone()
+        fill::of_materials(body)
     }
 
     fn is_damped(&self) -> bool {

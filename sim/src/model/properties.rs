@@ -120,8 +120,9 @@ impl Properties {
     }
 
     /// The shortest period (s) of a node of the body: `T = 2π√(m/k)` with its [lightest](Body::lightest) node and the
-    /// [greatest stiffness](Self::stiffest). Time steps can be given as fractions of it.
+    /// [greatest stiffness](Self::stiffest) of its [materials](Body::modulus). Time steps can be given as fractions of it.
     pub fn shortest_period(&self, body: &Body) -> f64 {
-        std::f64::consts::TAU * (body.lightest() / self.stiffest).sqrt()
+        let modulus = body.modulus().and_then(|moduli| moduli.iter().copied().reduce(f64::max)).unwrap_or(1.0);
+        std::f64::consts::TAU * (body.lightest() / (self.stiffest * modulus)).sqrt()
     }
 }

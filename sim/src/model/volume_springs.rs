@@ -184,7 +184,7 @@ impl Law for Sum {
 
     fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
         let of_springs = self.springs.parts(body).unwrap_or_else(|| vec![1.0; self.springs.springs.len()]);
-        let of_elements = fill::product(Some(&volumes_at_rest(body)), body.fill.as_deref());
+        let of_elements = fill::product(Some(&volumes_at_rest(body)), fill::of_materials(body).as_deref());
         Some(of_springs.into_iter().chain(of_elements.into_iter().flatten().filter(|&volume| volume > 0.0)).collect())
     }
 

@@ -6,6 +6,7 @@ use super::Stress;
 use super::map::{Map, cofactors, dot, product};
 use super::modes::{bits, of_slopes, slope_at, slopes, sums_and_differences, sums_and_differences_of_modes, without};
 use crate::body::Body;
+use crate::fill;
 use crate::lanes::Lanes;
 use crate::law::{Corners, Element, Law, Rigid, off};
 use crate::material::Damping;
@@ -180,7 +181,7 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
 
     /// The modulus and the measures of an element decide its stiffness.
     fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
-        body.fill.clone()
+        fill::of_materials(body)
     }
 
     fn is_damped(&self) -> bool {

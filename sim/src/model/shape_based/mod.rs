@@ -390,7 +390,8 @@ impl ShapeBased {
         const EQUAL: f64 = 1e-10;
         let own = self.material.map(|material| {
             let parts: Vec<_> = material.stiffness(body).into_iter().map(|own| own / self.stiffness).collect();
-            parts.iter().any(|part| (part - 1.0).abs() > EQUAL).then_some(parts)
+            let differ = parts.iter().any(|part| (part - 1.0).abs() > EQUAL).then_some(parts);
+            fill::product(differ.as_deref(), body.modulus.as_deref())
         });
         let relative = own.as_ref().map_or(body.stiffness.as_deref(), |own| own.as_deref());
         fill::product(body.fill.as_deref(), relative)
