@@ -7,6 +7,7 @@ use super::still::{check_type, source_of};
 use super::{animate, interrupt};
 use crate::animation::Format;
 use crate::gpu::{Gpu, GpuError, adapter_name};
+use crate::look::Plot;
 use crate::output::{
     Clock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn,
     passing_frames, read_tags,
@@ -208,7 +209,7 @@ fn stopped(keep: bool, error: RenderError) -> Failure {
 }
 
 impl Pictures for Drawing<'_> {
-    fn time_series(&self) -> Option<&[Diagnostic]> {
+    fn time_series(&self) -> Option<&[Plot]> {
         self.scene.time_series()
     }
 

@@ -5,6 +5,7 @@ use super::options::{PrintOptions, RunOptions};
 use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
 use super::{console, interrupt, report};
+use crate::look::Plot;
 use crate::output::export::Export;
 use crate::output::{
     Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
@@ -305,7 +306,7 @@ impl<'a> Session<'a> {
         };
         let is_drawn = pictures.is_some();
         let ahead = shown.is_some() && is_drawn;
-        let noted = shown.unwrap_or_default().to_vec();
+        let noted = shown.unwrap_or_default().iter().filter_map(Plot::diagnostic).collect();
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
@@ -428,7 +429,7 @@ impl<'a> Session<'a> {
                 let between = frames.take_rows(&frame);
                 results.take(&frame, &between, frames)?;
                 self.summary.frames.recorded += 1;
-                self.summary.note(&frame, &between);
+                self.summary.note(self.scene, &frame, &between);
                 if !*is_stored {
                     let states: Vec<_> = frames.states().collect();
                     pool.install(|| self.find_causes(&states));

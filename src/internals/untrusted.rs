@@ -4,14 +4,15 @@
 //! of the file allow.
 
 use crate::golden::{Pixels, is_record};
+use crate::look::Plot;
 use crate::mesh::{self, Fill, Format, Mesh};
 use crate::output::{Access, Folder, Manifest, Whose, read_tags};
 use crate::reading::setting::Setting;
 use crate::runner::{Frames, Next, Progress, Runner, Stored};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
+use crate::sim::State;
 use crate::sim::geometry::bounds;
-use crate::sim::{Diagnostic, State};
 use std::fs;
 use std::path::Path;
 
@@ -211,7 +212,7 @@ fn states(bytes: &[u8]) -> bool {
 fn checkpoint(bytes: &[u8]) -> bool {
     let Ok(progress) = postcard::from_bytes::<Progress>(bytes) else { return false };
     let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-    let runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
+    let runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
     let mut frames = Frames::new(runner, &[2, 4], None);
     let is_sound = frames.resume(progress).is_ok();
     for _ in 0..100 {
@@ -241,7 +242,7 @@ fn picture(bytes: &[u8]) -> bool {
 /// A checkpoint for that reader.
 pub fn checkpoint_of_scene() -> Vec<u8> {
     let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-    let runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
+    let runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
     let mut frames = Frames::new(runner, &[2, 4], None);
     frames.next(3).expect("no file is needed");
     let progress = frames.progress().expect("no file is needed").expect("frames are left");

@@ -10,6 +10,7 @@ mod drawn;
 pub(crate) mod file;
 pub(crate) mod font;
 mod palette;
+mod plot;
 pub(crate) mod print;
 #[cfg(feature = "render")]
 pub(crate) mod ramp;
@@ -27,6 +28,7 @@ pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
 pub use font::FontFiles;
 pub use palette::Theme;
+pub use plot::{Measure, Plot, PlotOf};
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::{Subject, SubjectBody, SubjectRun};

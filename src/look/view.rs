@@ -4,10 +4,11 @@ use super::camera::{Camera, CameraFile};
 use super::file::{ColourFile, ColourMap, PanelsFile};
 use super::font::{FontFile, FontFiles};
 use super::palette::{Palette, Theme};
+use super::plot::Plot;
 use super::print::{Print, SizeFile, TextScaleFile};
 use super::typed::TypedColour;
 use crate::colour::Colour;
-use crate::sim::{Body, Diagnostic, Dimension, Field};
+use crate::sim::{Body, Dimension, Field};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -76,9 +77,11 @@ pub struct View {
     /// Diagnostics plotted over the whole time of the scene, each in a chart below all panels, such as `["energy"]`,
     /// with the current time marked. In the first chart, numbered flags mark the moments when elements first turn over
     /// and when their count settles, or the extreme value; if nearly all its changes are early, that time has a larger
-    /// scale. The whole scene is simulated before the first frame is drawn. Default: none.
+    /// scale. Also what is measured of one thing: `{ plot = "force", of = "hold[0]" }`, and against a displacement as in a
+    /// test machine: `{ plot = "force", of = "grab[0]", against = "grab[0]" }`, in a chart below all others.
+    /// The whole scene is simulated before the first frame is drawn. Default: none.
     #[schemars(length(max = 6))]
-    pub charts: Vec<Diagnostic>,
+    pub charts: Vec<Plot>,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
     /// body at the same moment, in the colour of that run. All runs must have the same time step. Default: none.
     #[serde(serialize_with = "open")]

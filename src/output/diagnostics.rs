@@ -6,8 +6,9 @@ use super::{OutputError, exact, rows_as_csv};
 use crate::runner::TableRow;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::{Frame, RunFrame};
+use crate::scene::measure::{SIZES, exerted};
 use crate::scene::{ALL_BODIES, Run, Scene};
-use crate::sim::{Diagnostic, Diagnostics, Reaction, Snapshot, Source, Status, Value};
+use crate::sim::{Diagnostic, Diagnostics, Reaction, Snapshot, Status, Value};
 use glam::DVec3;
 use std::fs;
 use std::io;
@@ -18,6 +19,9 @@ pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
 
 /// Its name until it is finished.
 const UNFINISHED: &str = ".localshape-diagnostics.partial";
+
+/// Forces and displacements of a row.
+type Known<'a> = (&'a [Reaction], &'a [[f64; 6]]);
 
 /// Writes the diagnostics of frames in order. The file gets its name in [`Self::finish`].
 #[derive(Debug)]
@@ -35,8 +39,8 @@ impl<'a> DiagnosticsWriter<'a> {
         let file = Growing::open(&hidden, None).map_err(OutputError::writing(&path))?;
         let mut writer = Self { scene, file, hidden, path };
         let heads = cells(["", ALL_BODIES], None, 0.0, Status::Ok, &Diagnostics::default());
-        let exerted = Exerted { scene, run: None, forces: &[] }.cells(None);
-        let heads = heads.into_iter().chain(exerted).map(|(head, _)| head);
+        let measured = Measured { scene, run: None, forces: &[], displaced: &[] }.cells(None);
+        let heads = heads.into_iter().chain(measured).map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
     }
@@ -70,22 +74,23 @@ impl<'a> DiagnosticsWriter<'a> {
         for (place, RunFrame { run, snapshot, .. }) in frame.runs.iter().enumerate() {
             let run = &self.scene.runs[*run];
             let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
-            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], forces: &[Reaction]| {
-                let exerted = Exerted { scene: self.scene, run: Some(run), forces };
+            let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], (forces, displaced): Known<'_>| {
+                let measured = Measured { scene: self.scene, run: Some(run), forces, displaced };
                 let own = (0..).zip(of_bodies).zip(&bodies).map(|((at, one), &body)| (Some(at), body, one));
                 rows.extend(std::iter::once((None, ALL_BODIES, all)).chain(own).map(|(at, body, one)| {
                     let mut row = cells([&run.name, body], frame, time, status, one);
-                    row.extend(exerted.cells(at));
+                    row.extend(measured.cells(at));
                     row
                 }));
             };
             // The step of a frame has the row of the frame.
             let between = between.get(place).into_iter().flatten().filter(|row| row.time < snapshot.time);
-            for TableRow { time, all, of_bodies, reactions } in between {
-                add(None, *time, Status::Ok, all, of_bodies, reactions);
+            for TableRow { time, all, of_bodies, reactions, displaced } in between {
+                add(None, *time, Status::Ok, all, of_bodies, (&reactions[..], &displaced[..]));
             }
-            let Snapshot { time, status, diagnostics, of_bodies, reactions, .. } = snapshot;
-            add(Some(frame.index), *time, *status, diagnostics, of_bodies, reactions);
+            let Snapshot { time, status, diagnostics, of_bodies, reactions, position, .. } = snapshot;
+            let displaced = self.scene.all_displaced(run, position);
+            add(Some(frame.index), *time, *status, diagnostics, of_bodies, (&reactions[..], &displaced[..]));
         }
         self.append(&rows_as_csv(rows.into_iter().map(|row| row.into_iter().map(|(_, cell)| cell))))
     }
@@ -107,51 +112,45 @@ impl<'a> DiagnosticsWriter<'a> {
     }
 }
 
-/// What obstacles, constraints and bodies exert in a row of a run.
-struct Exerted<'a> {
+/// What obstacles, constraints and bodies exert in a row of a run, and how far probes have moved.
+struct Measured<'a> {
     scene: &'a Scene,
     /// `None` for headings.
     run: Option<&'a Run>,
     /// Empty if nothing is known.
     forces: &'a [Reaction],
+    /// The displacements of probes; empty for headings.
+    displaced: &'a [[f64; 6]],
 }
 
-impl Exerted<'_> {
+impl Measured<'_> {
     /// Force and torque of each obstacle, of each constraint and of each of several bodies, on a body of the run, or on all its bodies together,
-    /// with the headings of their columns. There are none where forces are not kept.
+    /// with the headings of their columns, where forces are kept; then the displacement of each probe.
     fn cells(&self, on: Option<usize>) -> Vec<(String, String)> {
-        let Self { scene, run, forces } = *self;
-        let obstacles = scene.obstacle_names.iter().enumerate();
-        let obstacles = obstacles.map(|(at, name)| (vec![Source::Obstacle(at)], name));
-        // A constraint on several bodies is one for each of them.
-        let mut names: Vec<&String> = scene.runs.iter().flat_map(|run| &run.grip_names).collect();
-        names.sort_unstable_by_key(|name| (name.starts_with("grab"), name.len(), *name));
-        names.dedup();
-        let gripping = |name: &String| {
-            let named = run.into_iter().flat_map(|run| run.grip_names.iter().enumerate());
-            named.filter(|(_, other)| *other == name).map(|(at, _)| Source::Grip(at)).collect()
+        let Self { scene, run, forces, displaced } = *self;
+        let names = scene.exerting().into_iter().filter(|_| scene.keeps_forces());
+        let of_source = |name: &str| {
+            let from = run.map_or_else(Vec::new, |run| scene.sources(run, name));
+            let both = ["force", "torque"].into_iter().zip(exerted(&from, forces, on));
+            both.flat_map(|(key, sum)| axes(&format!("{key} of {name}"), sum)).collect::<Vec<_>>()
         };
-        let grips = names.into_iter().map(|name| (gripping(name), name));
-        let own = |body: usize| run.and_then(|run| run.of.iter().position(|&of| of == body)).map(Source::Body);
-        let several = scene.bodies.iter().enumerate().filter(|_| scene.bodies.len() > 1);
-        let bodies = several.map(|(at, body)| (own(at).into_iter().collect(), &body.name));
-        let of_source = |(from, name): (Vec<Source>, &String)| {
-            let is_known = !from.is_empty() && !forces.is_empty();
-            let found = forces.iter().filter(move |one| from.contains(&one.from) && on.is_none_or(|on| one.on == on));
-            let name = name.clone();
-            ["force", "torque"].into_iter().enumerate().flat_map(move |(at, key)| {
-                let each = found.clone().map(|one| [one.force, one.torque][at]);
-                let sum = if is_known { each.sum() } else { DVec3::NAN };
-                let head = format!("{key} of {name}");
-                ["x", "y", "z"]
-                    .into_iter()
-                    .zip(sum.to_array())
-                    .map(move |(axis, one)| (format!("{head}_{axis}"), exact(one)))
-            })
-        };
-        let sources = obstacles.chain(grips).chain(bodies);
-        sources.filter(|_| scene.keeps_forces()).flat_map(of_source).collect()
+        let mut cells: Vec<_> = names.flat_map(of_source).collect();
+        let first = on.map_or(0, |on| on + 1) * scene.probes.len();
+        for (at, probe) in scene.probes.iter().enumerate() {
+            let [x, y, z, sizes @ ..] = displaced.get(first + at).copied().unwrap_or([f64::NAN; 6]);
+            let head = format!("displacement of {}", probe.name);
+            cells.extend(axes(&head, DVec3::new(x, y, z)));
+            let sizes = SIZES.into_iter().zip(sizes);
+            cells.extend(sizes.map(|(key, size)| (format!("{head}_{key}"), exact(size))));
+        }
+        cells
     }
+}
+
+/// The cells of a vector, with the headings of their columns.
+fn axes(head: &str, vector: DVec3) -> [(String, String); 3] {
+    let cell = |(axis, number): (&str, f64)| (format!("{head}_{axis}"), exact(number));
+    [("x", vector.x), ("y", vector.y), ("z", vector.z)].map(cell)
 }
 
 /// The cells of a row of a run and a body, each with the heading of its column; `docs/files.md` explains them. A row between
@@ -180,10 +179,7 @@ fn cells(
         match diagnostic.value(diagnostics) {
             Value::Count(count) => cells.push(plain(key, count.to_string())),
             Value::Number(number) => cells.push(plain(key, exact(number))),
-            Value::Vector(vector) => {
-                let axes = ["x", "y", "z"].into_iter().zip(vector.to_array());
-                cells.extend(axes.map(|(axis, number)| (format!("{key}_{axis}"), exact(number))));
-            }
+            Value::Vector(vector) => cells.extend(axes(key, vector)),
         }
     }
     cells.push(plain("status", status.to_owned()));

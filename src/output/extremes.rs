@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The least and the greatest value of each diagnostic at the recorded moments of a run: frames, rows between them, and the
-/// moments of charts. Diagnostics without a value have none.
+/// moments of charts; of forces of single things and of displacements of probes, in frames and rows. What has no value has none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Extremes {
     least: BTreeMap<String, Extreme>,
@@ -23,19 +23,22 @@ struct Extreme {
 impl Extremes {
     /// Takes note of some diagnostics at a time (s). The order in which moments are noted does not count.
     pub(crate) fn note(&mut self, wanted: &[Diagnostic], time: f64, all: &Diagnostics) {
-        for diagnostic in wanted {
-            let own = Extreme { value: diagnostic.of(all), time };
-            if !own.value.is_finite() {
-                continue;
-            }
-            let least = self.least.entry(diagnostic.key().to_owned()).or_insert(own);
-            if own < *least {
-                *least = own;
-            }
-            let greatest = self.greatest.entry(diagnostic.key().to_owned()).or_insert(own);
-            if own.value > greatest.value || own.value == greatest.value && time < greatest.time {
-                *greatest = own;
-            }
+        wanted.iter().for_each(|diagnostic| self.note_one(diagnostic.key(), time, diagnostic.of(all)));
+    }
+
+    /// Takes note of a value with a name at a time (s).
+    pub(crate) fn note_one(&mut self, name: &str, time: f64, value: f64) {
+        let own = Extreme { value, time };
+        if !value.is_finite() {
+            return;
+        }
+        let least = self.least.entry(name.to_owned()).or_insert(own);
+        if own < *least {
+            *least = own;
+        }
+        let greatest = self.greatest.entry(name.to_owned()).or_insert(own);
+        if value > greatest.value || value == greatest.value && time < greatest.time {
+            *greatest = own;
         }
     }
 }

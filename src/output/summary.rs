@@ -200,6 +200,13 @@ impl Numbers {
     }
 }
 
+impl RunEntry {
+    /// Records magnitudes of single things at a time (s).
+    fn note_single(&mut self, time: f64, all: Vec<(String, f64)>) {
+        all.iter().for_each(|(name, value)| self.extremes.note_one(name, time, *value));
+    }
+}
+
 impl Summary {
     /// The summary of `asked` frames of some of the scene's runs, before the first frame.
     pub(crate) fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
@@ -236,18 +243,23 @@ impl Summary {
     }
 
     /// Records the values of a frame, and of the rows of each run before it.
-    pub(crate) fn note(&mut self, frame: &Frame, between: &[Vec<TableRow>]) {
-        for (summary, rows) in self.runs.iter_mut().zip(between) {
-            rows.iter().for_each(|row| summary.extremes.note(Diagnostic::ALL, row.time, &row.all));
+    pub(crate) fn note(&mut self, scene: &Scene, frame: &Frame, between: &[Vec<TableRow>]) {
+        for ((summary, rows), run) in self.runs.iter_mut().zip(between).zip(&frame.runs) {
+            for TableRow { time, all, reactions, displaced, .. } in rows {
+                summary.extremes.note(Diagnostic::ALL, *time, all);
+                summary.note_single(*time, scene.magnitudes(&scene.runs[run.run], reactions, displaced));
+            }
         }
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
-            let Snapshot { time, status, diagnostics, .. } = &run.snapshot;
+            let Snapshot { time, status, diagnostics, reactions, position, .. } = &run.snapshot;
             let time = match status {
                 Status::Ok => *time,
                 // That of the last finite state, which the frame shows.
                 Status::Diverged(divergence) => (divergence.step - 1) as f64 * summary.time_step,
             };
             summary.extremes.note(Diagnostic::ALL, time, diagnostics);
+            let run = &scene.runs[run.run];
+            summary.note_single(time, scene.magnitudes(run, reactions, &scene.all_displaced(run, position)));
         }
     }
 

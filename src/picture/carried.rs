@@ -268,7 +268,7 @@ impl SurfaceContext<'_> {
         };
         let base = sound.vertices.len();
         sound.vertices.par_extend((0..fine.points.len()).into_par_iter().with_min_len(OF_THREAD).map(vertex));
-        if self.coloured {
+        if !self.colours.is_empty() {
             sound.shades.resize(sound.vertices.len(), -1.0 - narrow_count(fine.body % BODIES));
         } else if self.shades.is_some() {
             let shades = fine.shades(of_nodes);

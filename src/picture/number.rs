@@ -89,13 +89,15 @@ pub(super) fn value(diagnostic: Diagnostic, value: f64, extent: f64) -> String {
         Diagnostic::TurnedOver | Diagnostic::Broken | Diagnostic::Crossings => value.to_string(),
         Diagnostic::VolumeRatio => ratio(value),
         Diagnostic::ShapeError => length(value, extent),
-        _ => {
-            let unit = diagnostic.unit();
-            let value = rounded(value, 3);
-            let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
-            with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
-        }
+        _ => with_unit(value, diagnostic.unit()),
     }
+}
+
+/// A value with a unit.
+pub(super) fn with_unit(value: f64, unit: &str) -> String {
+    let value = rounded(value, 3);
+    let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
+    with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
 }
 
 /// A ratio around 1, with two decimals.

@@ -58,8 +58,8 @@ pub(super) struct SurfaceContext<'a> {
     pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
-    /// Whether each body has a colour of its own.
-    pub(super) coloured: bool,
+    /// The place of each element among the colours of bodies and regions; empty if there is one.
+    pub(super) colours: &'a [u8],
     /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
     pub(super) edges: [bool; 2],
 }
@@ -231,7 +231,7 @@ impl SurfaceContext<'_> {
         // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
-        mesh.shades.reserve(if self.shades.is_some() || self.coloured { 4 * faces.len() } else { 0 });
+        mesh.shades.reserve(if self.shades.is_some() || !self.colours.is_empty() { 4 * faces.len() } else { 0 });
         // Edges of turned-over elements are always drawn.
         let is_edged = self.is_fine() && (self.edges[0] || kinds.edge != LineKind::Edge);
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
@@ -448,9 +448,10 @@ impl SurfaceContext<'_> {
             }));
         }
         mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
-        if self.coloured {
-            let body = body % BODIES;
-            mesh.shades.resize(mesh.vertices.len(), -1.0 - narrow_count(body));
+        if !self.colours.is_empty() {
+            let own = side.element.and_then(|element| self.colours.get(element as usize));
+            let place = own.map_or(body % BODIES, |&own| own.into());
+            mesh.shades.resize(mesh.vertices.len(), -1.0 - narrow_count(place));
         }
     }
 

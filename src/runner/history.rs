@@ -3,7 +3,7 @@
 //! frames.
 
 use crate::look::CameraBoxes;
-use crate::scene::{Run, Scene};
+use crate::scene::{Reading, Run, Scene};
 use crate::sim::geometry;
 use crate::sim::{Diagnostics, Divergence, Moment, Reaction, Shape, World};
 use glam::DVec3;
@@ -39,6 +39,8 @@ pub struct TimeSeries {
     /// The diagnostics of each body of the run, one series for each; empty for a run of one body, and if no diagnostics were
     /// requested.
     pub of_bodies: Vec<Vec<Diagnostics>>,
+    /// What each chart that shows no diagnostic has, in the order of these charts, at each of these times.
+    pub readings: Vec<Vec<Reading>>,
     /// The positions (m) of each point of the body that leaves a path ([`crate::look::View::paths`]), at each of these
     /// times.
     pub paths: Vec<Vec<DVec3>>,
@@ -53,8 +55,8 @@ pub struct TimeSeries {
 impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
-        let (times, diagnostics, of_bodies, paths, boxes, reach) = Default::default();
-        Self { run, times, diagnostics, of_bodies, paths, boxes, reach, divergence: None }
+        let (times, diagnostics, of_bodies, readings, paths, boxes, reach) = Default::default();
+        Self { run, times, diagnostics, of_bodies, readings, paths, boxes, reach, divergence: None }
     }
 
     /// Whether it has the same run and the same quantities as an empty one.
@@ -64,6 +66,8 @@ impl TimeSeries {
             && self.diagnostics.len() == moments
             && self.of_bodies.len() == empty.of_bodies.len()
             && self.of_bodies.iter().all(|body| body.len() == moments)
+            && self.readings.len() == empty.readings.len()
+            && self.readings.iter().all(|of| of.len() == moments)
             && self.paths.len() == empty.paths.len()
             && self.paths.iter().all(|path| path.len() == moments)
     }
@@ -96,6 +100,8 @@ pub(crate) struct TableRow {
     pub(crate) of_bodies: Vec<Diagnostics>,
     /// The mean forces of contact, if they are kept and known.
     pub(crate) reactions: Vec<Reaction>,
+    /// The displacements of probes, as [`Scene::all_displaced`] has them.
+    pub(crate) displaced: Vec<[f64; 6]>,
 }
 
 /// For each obstacle of a scene the box around all nodes that have been near it (m), relative to the obstacle at the
@@ -174,9 +180,9 @@ pub(crate) fn moments(scene: &Scene, world: &World, closer: Option<[f64; 2]>, sh
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::look::Plot;
     use crate::runner::Runner;
     use crate::scene::Limits;
-    use crate::sim::Diagnostic;
 
     fn scene(duration: &str, rate: &str, step: &str) -> Scene {
         let text = format!(
@@ -225,7 +231,7 @@ mod tests {
         let end = scene.moment(scene.last_frame());
         let whole = format!("{:?}", History::new(&scene, &[0, 1]));
         for slice in [1, 3, 1000] {
-            let mut runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
+            let mut runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
             while !runner.advance_towards(end, slice) {
                 assert!(runner.steps() < runner.steps_at(end));
             }
@@ -239,7 +245,7 @@ mod tests {
     fn rows_between_frames_change_no_picture() {
         let record = |rate: &str| {
             let scene = scene("0.1", rate, "T/70");
-            let mut runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL).with_rows();
+            let mut runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]).with_rows();
             runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
             (format!("{:?}", runner.take_history()), runner.runs[0].rows.take().map(|rows| rows.len()))
         };
@@ -273,8 +279,11 @@ mod tests {
     fn what_is_looked_at_closely_has_more_moments() {
         let scene = scene("3", "60", "T/70");
         let usual = History::new(&scene, &[0, 1]);
-        let mut runner =
-            Runner::new(&scene, &[0, 1]).with_closer_time_series(Diagnostic::ALL, Some([0.0, 0.1]), &[1.2345, 9.0]);
+        let mut runner = Runner::new(&scene, &[0, 1]).with_closer_time_series(
+            &Plot::diagnostics(),
+            Some([0.0, 0.1]),
+            &[1.2345, 9.0],
+        );
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         let closer = runner.take_history();
         for (usual, closer) in usual.series.iter().zip(&closer.series) {

@@ -11,7 +11,8 @@ mod meetings;
 pub(crate) mod moments;
 mod stored;
 
-use crate::look::Traced;
+use crate::look::{Plot, Traced};
+use crate::scene::measure::Meter;
 use crate::scene::{Recorded, Scene};
 use crate::sim::{Body, Crew, Diagnostic, Diagnostics, Integrator, Moment, State, Status, Stepping, World};
 pub use frame::{Frame, LastFit, RunFrame};
@@ -33,11 +34,11 @@ pub(crate) use stored::Stored;
 /// It uses the rayon thread pool of the caller; the frames have the same bits for any number of threads.
 pub struct Runner<'a> {
     scene: &'a Scene,
-    runs: Vec<Running>,
+    runs: Vec<Running<'a>>,
 }
 
 /// One run with its world and time series.
-struct Running {
+struct Running<'a> {
     run: usize,
     world: World,
     /// Time step (s).
@@ -46,6 +47,8 @@ struct Running {
     notes: Vec<Moment>,
     /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
+    /// What other charts show.
+    meters: Vec<Meter<'a>>,
     /// The points with recorded paths.
     traced: Vec<Traced>,
     body: Arc<Body>,
@@ -102,6 +105,7 @@ impl<'a> Runner<'a> {
                 step: scene.runs[run].step,
                 notes: Vec::new(),
                 wanted: Vec::new(),
+                meters: Vec::new(),
                 traced: Vec::new(),
                 body: Arc::clone(body),
                 series: TimeSeries::new(run),
@@ -124,7 +128,7 @@ impl<'a> Runner<'a> {
 
     /// Shows the recordings of its runs from now on, in place of steps; `None` if they are those of other bodies or models.
     fn playing(mut self, recordings: &[Arc<Recorded>]) -> Option<Self> {
-        let play = |(running, recording): (Running, &Arc<Recorded>)| {
+        let play = |(running, recording): (Running<'a>, &Arc<Recorded>)| {
             let State { position, memory, .. } = running.world.state();
             let memory = memory.shown().count();
             if (recording.nodes, recording.memory) != (position.len(), Some(memory)) {
@@ -170,33 +174,32 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// Keeps what some diagnostics tell of contact, if they do, beside what the charts of the scene tell.
-    pub(crate) fn keeping_contact(mut self, wanted: &[Diagnostic]) -> Self {
+    /// Keeps what some charts tell of contact, if they do, beside what the charts of the scene tell.
+    pub(crate) fn keeping_contact(mut self, plots: &[Plot]) -> Self {
         let scene = self.scene;
-        if wanted.iter().any(|one| one.is_of_forces()) {
+        if plots.iter().any(Plot::is_of_forces) {
             self.runs.iter_mut().for_each(|running| scene.keep_contact(&mut running.world));
         }
         self
     }
 
-    /// Records time series of some diagnostics of all runs, if any are wanted.
-    pub(crate) fn with_time_series<'w>(self, wanted: impl Into<Option<&'w [Diagnostic]>>) -> Self {
-        match wanted.into() {
-            Some(wanted) => self.with_closer_time_series(wanted, None, &[]),
+    /// Records time series for some charts of all runs, if any are wanted.
+    pub(crate) fn with_time_series<'w>(self, plots: impl Into<Option<&'w [Plot]>>) -> Self {
+        match plots.into() {
+            Some(plots) => self.with_closer_time_series(plots, None, &[]),
             None => self,
         }
     }
 
     /// Records more moments: the interval `closer` (s), if given, has as many moments as the whole scene usually has,
     /// and the steps nearest to each of `shown` (s) are added.
-    pub(crate) fn with_closer_time_series(
-        mut self,
-        wanted: &[Diagnostic],
-        closer: Option<[f64; 2]>,
-        shown: &[f64],
-    ) -> Self {
+    pub(crate) fn with_closer_time_series(mut self, plots: &[Plot], closer: Option<[f64; 2]>, shown: &[f64]) -> Self {
+        let (scene, of) = (self.scene, plots.iter().filter_map(Plot::of));
+        let wanted: Vec<_> = plots.iter().filter_map(Plot::diagnostic).collect();
         for running in &mut self.runs {
-            running.wanted = wanted.to_vec();
+            running.wanted = wanted.clone();
+            running.meters = of.clone().map(|of| Meter::new(scene, &scene.runs[running.run], of)).collect();
+            running.series.readings = vec![Vec::new(); running.meters.len()];
             running.traced = self.scene.view.paths.clone();
             running.series.paths = vec![Vec::new(); running.traced.len()];
             let bodies = self.scene.runs[running.run].of.len();
@@ -283,7 +286,7 @@ impl<'a> Runner<'a> {
     }
 }
 
-impl Running {
+impl Running<'_> {
     /// The present state, and the drawn one if the run has diverged.
     fn frame(&self, scene: &Scene) -> RunFrame {
         let Self { run, world, threads, is_drawn, last_fit, .. } = self;
@@ -376,7 +379,8 @@ impl Running {
         if let Some(rows) = row {
             let time = steps as f64 * self.step;
             let reactions = world.reactions().unwrap_or_default();
-            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone(), reactions });
+            let displaced = scene.all_displaced(&scene.runs[run], &world.state().position);
+            rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone(), reactions, displaced });
         }
         if is_noted {
             self.note(scene, steps, (all, of_bodies));
@@ -410,7 +414,13 @@ impl Running {
     /// Records the present state after a step for pictures, with its diagnostics.
     fn note(&mut self, scene: &Scene, step: u64, diagnostics: (Diagnostics, Vec<Diagnostics>)) {
         let position = &self.world.state().position;
-        self.series.note(scene, step as f64 * self.step, diagnostics, position);
+        let time = step as f64 * self.step;
+        self.series.note(scene, time, diagnostics, position);
+        if !self.meters.is_empty() {
+            let forces = self.world.reactions().unwrap_or_default();
+            let readings = self.meters.iter().map(|meter| meter.read(time, position, &forces));
+            self.series.readings.iter_mut().zip(readings).for_each(|(of, reading)| of.push(reading));
+        }
         for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {
             path.push(traced.of(&self.body, position));
         }
@@ -458,7 +468,7 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        Self::with(scene, runs, Diagnostic::ALL)
+        Self::with(scene, runs, &Plot::diagnostics())
     }
 
     /// Simulates runs of a scene from start to end for their pictures: charts, paths, cameras that follow, and the size
@@ -470,8 +480,8 @@ impl History {
         scene.time_series().map_or_else(Self::default, |wanted| Self::with(scene, runs, wanted))
     }
 
-    fn with(scene: &Scene, runs: &[usize], wanted: &[Diagnostic]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(wanted);
+    fn with(scene: &Scene, runs: &[usize], plots: &[Plot]) -> Self {
+        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(plots);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }
@@ -523,7 +533,7 @@ mod tests {
     fn frames_that_wait_for_the_time_series_are_the_same() {
         let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
         let take = |whole_series: bool, slice: u64| {
-            let runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
+            let runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
             let waiting = whole_series.then(|| growing::Growing::new(tempfile::tempfile().unwrap()));
             let mut frames = Frames::new(runner, &[0, 2], waiting);
             let (mut taken, mut series) = (Vec::new(), None);

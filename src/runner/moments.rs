@@ -1,5 +1,6 @@
 //! The simulations of figures: states of runs at chosen moments, and the time series of a scene for charts.
 
+use crate::look::Plot;
 use crate::runner::RunFrame;
 use crate::runner::Runner;
 use crate::runner::history::History;
@@ -128,7 +129,8 @@ impl<'a> Taking<'a> {
             None => {
                 // Most sheets show more runs than there are threads.
                 let runner = Runner::among(usize::MAX, &sheet.scenes[of[0]], &[of[1]]).with_diagnostics(&wanted);
-                let runner = runner.keeping_contact(&[&sheet.charts[..], &wanted].concat());
+                let numbers = wanted.iter().copied().map(Plot::from);
+                let runner = runner.keeping_contact(&sheet.charts.iter().cloned().chain(numbers).collect::<Vec<_>>());
                 parts.push(ShownRun { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
                 parts.len() - 1
             }

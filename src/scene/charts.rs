@@ -1,16 +1,18 @@
-//! The diagnostics that pictures of a scene show over time.
+//! What the charts of a scene show.
 
 use super::{Scene, SceneBody};
+use crate::look::{Measure, Plot, PlotOf};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, key_path};
-use crate::reading::words::quoted;
+use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::coordinates::{direction, vector};
+use crate::reading::words::{list, nearest, quoted};
 use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Diagnostic, Dimension, Obstacle, Shape, geometry};
 
 impl Scene {
-    /// The diagnostics whose time series pictures need; `None` if pictures do not show the course of the whole scene.
+    /// The charts whose time series pictures need; `None` if pictures do not show the course of the whole scene.
     /// Charts, paths, cameras that follow, and the drawn sizes of plates and walls show it.
-    pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
+    pub(crate) fn time_series(&self) -> Option<&[Plot]> {
         let view = &self.view;
         let is_flat = self.dimension() == Dimension::Plane;
         let ground = geometry::ground(&self.obstacles, 0.0);
@@ -28,24 +30,66 @@ impl Scene {
 
     /// Whether charts or marks tell of forces of contact or of constraints, so that they are kept.
     pub(crate) fn keeps_forces(&self) -> bool {
-        self.view.visible.contacts || self.view.charts.iter().any(|chart| chart.is_of_forces())
+        self.view.visible.contacts || self.view.charts.iter().any(Plot::is_of_forces)
     }
 
     /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
-    pub(super) fn check_charts(
-        charts: &[Diagnostic],
-        scenes: &[Self],
-        table: &'static str,
-        report: &mut Collector<'_>,
-    ) {
+    pub(super) fn check_charts(charts: &[Plot], scenes: &[Self], table: &'static str, report: &mut Collector<'_>) {
         for (index, chart) in charts.iter().enumerate() {
-            let (path, found) = (key_path![table, "charts", index], quoted(&typed(chart)));
+            let path = key_path![table, "charts", index];
+            let found = chart.diagnostic().map_or("the same".to_owned(), |one| quoted(&typed(&one)));
             if let Some(first) = charts[..index].iter().position(|other| other == chart) {
                 let message = format!("`{table}.charts[{index}]` is {found}, as is `{table}.charts[{first}]`");
                 report.at(&path, message, "expected each diagnostic once; remove one".to_owned());
-            } else if let Some(why) = scenes.iter().map(|scene| scene.lacks(*chart)).reduce(Option::and).flatten() {
+            } else if let Plot::Of(of) = chart {
+                scenes.iter().for_each(|scene| scene.check_plot(of, &path, report));
+                if scenes.len() > 1 && of.against.is_some() {
+                    let message =
+                        format!("`{table}.charts[{index}]` is against a displacement, but of {} scenes", scenes.len());
+                    report.at(
+                        &key_path![path; "against"],
+                        message,
+                        "such a chart shows one scene; remove `against`".to_owned(),
+                    );
+                }
+            } else if let Some(why) =
+                scenes.iter().map(|scene| scene.lacks(chart.diagnostic()?)).reduce(Option::and).flatten()
+            {
                 report.at(&path, format!("`{table}.charts[{index}]` is {found}, which no run has"), why);
             }
+        }
+    }
+
+    /// Reports a chart at a path of a thing that is not there, or without a direction.
+    fn check_plot(&self, of: &PlotOf, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+        let (exerting, moving) = (self.exerting(), self.moving());
+        let measured = if of.plot == Measure::Displacement { &moving } else { &exerting };
+        let named = [("of", Some(&of.of), measured), ("against", of.against.as_ref(), &moving)];
+        for (key, name, known) in named.into_iter().filter_map(|(key, name, known)| Some((key, name?, known))) {
+            if known.contains(&name.as_str()) {
+                continue;
+            }
+            let what = match (key, of.plot) {
+                ("of", Measure::Force | Measure::Torque) => "an obstacle, a hold, a grab or one of several bodies",
+                _ => "a probe, a hold, a grab or an obstacle",
+            };
+            let here = list(known, "or", quoted);
+            let expected = if known.is_empty() { format!("{what}; there is none") } else { format!("{what}: {here}") };
+            let help = nearest(name, known).map(|near| format!("did you mean {}?", quoted(near)));
+            let path = key_path![path; key];
+            report.at(&path, format!("`{}` is {}; expected {expected}", written(&path), quoted(name)), help);
+            return;
+        }
+        let at = key_path![path; "along"];
+        if let Some(typed) = &of.along {
+            vector(typed, self.dimension(), &at, report).and_then(|along| direction(along, &at, report));
+        } else if let Some(against) = of.against.as_ref().filter(|_| self.along(of).is_none()) {
+            let message = format!("`{}` has no `along`, and {} has no path", written(path), quoted(against));
+            report.at(
+                path,
+                message,
+                "give the direction of the force and the displacement, such as along = [0, -1, 0]".to_owned(),
+            );
         }
     }
 

@@ -1,7 +1,7 @@
 //! The properties of a scene that only drawing needs.
 
 use super::{Run, Scene};
-use crate::look::{LineStyle, Palette};
+use crate::look::{LineStyle, Palette, Plot};
 use crate::sim::geometry::bounds;
 use crate::sim::model::ElasticModel;
 use crate::sim::{Diagnostic, Grip, Motion};
@@ -21,7 +21,7 @@ impl Scene {
 
     /// The diagnostics of a frame in its picture: the number of each run, and the present value in a chart.
     pub(crate) fn frame_diagnostics(&self) -> Vec<Diagnostic> {
-        self.view.charts.iter().copied().chain([Diagnostic::ShapeError]).collect()
+        self.view.charts.iter().filter_map(Plot::diagnostic).chain([Diagnostic::ShapeError]).collect()
     }
 }
 

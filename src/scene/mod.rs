@@ -20,6 +20,7 @@ pub(crate) mod generate;
 mod keys;
 mod limits;
 mod load;
+pub(crate) mod measure;
 pub(crate) mod mesh;
 pub(crate) mod npy;
 pub(crate) mod npz;
@@ -42,7 +43,8 @@ pub use crate::reading::captions::description;
 pub use crate::reading::setting::Setting;
 pub use crate::reading::{Mistake, Mistakes};
 pub use builder::{
-    BodyBuilder, ContactBuilder, LoadBuilder, NodeSet, ObstacleBuilder, PairBuilder, RunBuilder, SceneBuilder,
+    BodyBuilder, ContactBuilder, LoadBuilder, NodeSet, ObstacleBuilder, PairBuilder, RegionBuilder, RunBuilder,
+    SceneBuilder,
 };
 pub use error::SceneError;
 pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing, Up};
@@ -50,6 +52,7 @@ pub use keys::{BodyLists, SceneKeys};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
+pub use measure::{Probe, Reading};
 pub use recording::Recorded;
 pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};
 pub use run::{Rest, Run};
@@ -97,6 +100,8 @@ pub struct Scene {
     pub obstacle_names: Vec<String>,
     /// How surfaces meet, with bodies counted as in the scene; `None` if nodes meet obstacles and nothing else meets.
     pub contacts: Option<Contacts>,
+    /// Nodes whose displacement is measured.
+    pub probes: Vec<Probe>,
     /// The view.
     pub view: View,
     /// Warnings: allowed, but probably mistakes.
@@ -125,6 +130,21 @@ pub struct SceneBody {
     pub(crate) springs: Option<Vec<[u32; 2]>>,
     /// Sets of nodes with a name.
     pub(crate) groups: Vec<Group>,
+    /// Regions with a material of their own.
+    pub regions: Vec<Region>,
+}
+
+/// A region of a body with a material of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Its name, unique in its body.
+    pub name: String,
+    /// Its elements in rising order.
+    pub elements: Vec<u32>,
+    /// Its modulus relative to that of the models, if it has one of its own.
+    pub modulus: Option<f64>,
+    /// Its density (kg/m³, in the plane kg/m²), if it has one of its own.
+    pub density: Option<f64>,
 }
 
 impl SceneBody {
@@ -183,10 +203,14 @@ impl Scene {
         self.view.bodies = self.names_of_bodies();
     }
 
-    /// The names of the bodies by their places in runs; empty if no run has several bodies. Bodies of other runs at the same
-    /// place are named, too.
+    /// The names of the bodies by their places in runs, then of regions; empty if no run has several bodies and there are no regions. Bodies of
+    /// other runs at the same place are named, too.
     fn names_of_bodies(&self) -> Vec<String> {
-        let most = self.runs.iter().map(|run| run.of.len()).max().filter(|&most| most > 1).unwrap_or(0);
+        let regions = self.names_of_regions();
+        let most = self.most_bodies();
+        if most == 1 && regions.is_empty() {
+            return Vec::new();
+        }
         let at = |place: usize| {
             let mut names: Vec<&str> = Vec::new();
             for body in self.runs.iter().filter_map(|run| run.of.get(place)) {
@@ -197,7 +221,23 @@ impl Scene {
             }
             names.join(" / ")
         };
-        (0..most).map(at).collect()
+        (0..most).map(at).chain(regions.into_iter().map(str::to_owned)).collect()
+    }
+
+    /// The number of bodies in the run with most of them.
+    pub(crate) fn most_bodies(&self) -> usize {
+        self.runs.iter().map(|run| run.of.len()).max().unwrap_or(1)
+    }
+
+    /// The names of the regions of all bodies. Regions of one name have one colour.
+    pub(crate) fn names_of_regions(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for name in self.bodies.iter().flat_map(|body| &body.regions).map(|region| region.name.as_str()) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     }
 
     /// The message and help for an unknown run.
@@ -224,6 +264,12 @@ impl Scene {
     /// The moment that a frame shows.
     pub fn moment(&self, frame: u64) -> Moment {
         Moment { count: frame as f64, rate: self.frames_per_second }
+    }
+
+    /// The intervals over which forces of a run are averaged (s): between rows of `diagnostics.csv`, or else between frames.
+    #[cfg(feature = "render")]
+    pub(crate) fn interval(&self, run: usize) -> f64 {
+        self.every.unwrap_or(1.0 / self.frames_per_second).max(self.runs[run].step)
     }
 
     /// The moment of the first row of `diagnostics.csv` after some steps of a run; `None` if there are only rows of frames.

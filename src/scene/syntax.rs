@@ -18,7 +18,7 @@ pub(super) fn mistakes(source: &Source<'_>, errors: &[toml::de::Error], name: &s
             let (found, text) = (error.message(), source.text().get(span.clone()).unwrap_or_default());
             let not_toml = || format!("this is not TOML: {found}");
             let (message, help) = if found == "duplicate key" {
-                let is_list = ["body", "run", "obstacle", "hold", "grab"].contains(&text);
+                let is_list = ["body", "run", "obstacle", "hold", "grab", "load", "probe"].contains(&text);
                 let help = is_list.then(|| format!("write `[[{text}]]` before each of several"));
                 (format!("`{text}` is given a second time"), help)
             } else if let Some((comma, [whole, part])) = decimal_comma(source.text(), span.start) {

@@ -27,6 +27,7 @@ impl SceneFile {
             hold: entries(parts, "hold", report),
             grab: entries(parts, "grab", report),
             load: entries(parts, "load", report),
+            probe: entries(parts, "probe", report),
             view: part(parts, "view", report).unwrap_or_default(),
         }
     }
@@ -55,6 +56,7 @@ impl SceneFile {
         drop(&mut self.hold, "hold", checked);
         drop(&mut self.grab, "grab", checked);
         drop(&mut self.load, "load", checked);
+        drop(&mut self.probe, "probe", checked);
         self.gravity = self.gravity.take().filter(|_| !checked.flawed.contains("gravity"));
         if checked.flawed.contains("view") {
             self.view = TypedView::default();

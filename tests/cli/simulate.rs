@@ -734,6 +734,7 @@ fn forces_of_holds_are_columns() {
          body = { lattice = { cells = [2, 1, 1], side = 0.1 }, density = 1000.0 }\n\
          hold = [{ nodes = 'left' }]\ngrab = [{ nodes = [2], path.keys = [{ time = 0.1 }, { time = 0.3 }] }]\n\
          load = [{ faces = 'right', force = [3, 0, 1], ramp = 0.5 }]\n\
+         probe = [{ name = 'end', nodes = 'right' }]\n\
          run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.5 } }]\n",
     );
     place.run("simulate held.toml -q").good();
@@ -748,6 +749,15 @@ fn forces_of_holds_are_columns() {
         assert!(number(&format!("contact_force_{axis}")).is_nan());
     }
     assert!(number("work") > 0.0 && number("energy") < number("work") + 19.6 * 0.1);
+    // The end hangs below, and `run.json` has the peaks of all of these.
+    let [least, mean, most] = ["least", "mean", "greatest"].map(|key| number(&format!("displacement of end_{key}")));
+    assert!(0.0 < least && least <= mean && mean <= most && number("displacement of end_y") < -0.5 * mean);
+    let summary: serde_json::Value = serde_json::from_str(&place.read("output/held/run.json")).expect("JSON");
+    let peak = |which: &str, key: &str| summary["runs"][0][which][key]["value"].as_f64().expect(key);
+    let force =
+        ["x", "y", "z"].map(|axis| number(&format!("force of hold[0]_{axis}")).powi(2)).iter().sum::<f64>().sqrt();
+    assert!(peak("greatest", "force of hold[0]") >= force && peak("least", "force of hold[0]") <= force);
+    assert!(peak("greatest", "displacement of end_mean") >= mean && peak("least", "displacement of end_least") == 0.0);
 }
 
 /// Features that pass each other sideways in a long step cross; the first frame in which they do is told.

@@ -10,7 +10,8 @@ fn series(values: &[f64], diverged: bool) -> Series {
     let style = LineStyle { colour: [0; 3], dash: &[] };
     let diverged = diverged.then_some(values.len() as f64);
     let (name, members) = Default::default();
-    Series { run: 0, name, style, is_count: false, is_part: false, points, members, diverged, is_end: false }
+    let times = Vec::new();
+    Series { run: 0, name, style, is_count: false, is_part: false, points, times, members, diverged, is_end: false }
 }
 
 #[test]
@@ -53,6 +54,22 @@ fn each_of_several_bodies_has_a_curve_over_all_times() {
     assert_eq!(curves.iter().map(|curve| &*curve.name).collect::<Vec<_>>(), ["one", "other"]);
     assert_eq!(curves[1].points, [[0.0, 4.0], [0.1, 5.0], [0.2, 6.0]]);
     assert_eq!(curves[0].points, [[0.0, 1.0], [0.1, 2.0], [0.2, 3.0]]);
+}
+
+/// A force that was averaged over an interval stands over the displacement in its middle, once, also on the way back.
+#[test]
+fn forces_stand_over_the_middle_of_their_intervals() {
+    let moments: Vec<f64> = (0..=20).map(|at| 0.05 * f64::from(at)).collect();
+    let way = |time: f64| if time <= 0.5 { time } else { 1.0 - time };
+    let ways: Vec<_> = moments.iter().map(|&time| [time, way(time)]).collect();
+    // The mean of the last whole fifth of a second.
+    let forces: Vec<_> = moments.iter().map(|&time| [time, 10.0 * ((time + 1e-9) / 0.2).floor()]).collect();
+    let (times, points) = of_intervals(&forces, &ways, 0.2, 1e-3);
+    let expected = [(0.2, [0.1, 10.0]), (0.4, [0.3, 20.0]), (0.6, [0.5, 30.0]), (0.8, [0.3, 40.0]), (1.0, [0.1, 50.0])];
+    assert_eq!(times.len(), 5, "{times:?}");
+    for ((time, point), (at, [x, y])) in times.iter().zip(&points).zip(expected) {
+        assert!((time - at).abs() < 1e-12 && (point[0] - x).abs() < 1e-12 && point[1] == y, "{time}: {point:?}");
+    }
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn figures_ask_for_energies_only_where_they_show_them() {
         (Scope::Summaries, None, elastic, 0),
     ] {
         let Content::Sheet(sheet) = &mut figure.content else { panic!("a contact sheet") };
-        (sheet.number, sheet.charts) = (number, vec![chart]);
+        (sheet.number, sheet.charts) = (number, vec![chart.into()]);
         let mut taking = Taking::new(&figure, scope);
         while taking.advance(u64::MAX).is_some() {}
         let moments = taking.finish();

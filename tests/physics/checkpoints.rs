@@ -1,10 +1,10 @@
 //! A simulation that another process continues, from any point, has the bits of an uninterrupted one.
 
+use localshape::look::Plot;
 use localshape::runner::growing::Growing;
 use localshape::runner::history::History;
 use localshape::runner::{Frames, Next, Progress, Runner};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::Diagnostic;
 
 /// Runs with different steps, with a path and forces that act for a while. The third run diverges.
 const SCENE: &str = "
@@ -38,7 +38,7 @@ struct Taken {
 }
 
 fn frames<'a>(scene: &'a Scene, numbers: &[u64], waiting: Option<Growing>) -> Frames<'a> {
-    let runner = Runner::new(scene, &[0, 1, 2]).with_time_series(Diagnostic::ALL);
+    let runner = Runner::new(scene, &[0, 1, 2]).with_time_series(&Plot::diagnostics()[..]);
     Frames::new(runner, numbers, waiting)
 }
 

@@ -13,7 +13,7 @@ use localshape::sim::{Diagnostic, Status};
 /// The scene of Fig. 4(b) with a chart, and some of its frames.
 fn with_chart<const N: usize>(chart: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {
     let (mut scene, _) = fig4b(0);
-    scene.view.charts = vec![chart];
+    scene.view.charts = vec![chart.into()];
     let mut runner = Runner::new(&scene, &[0, 1]);
     let frames = frames.map(|index| runner.frame(index));
     (scene, frames)
@@ -452,10 +452,34 @@ fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette())).collect::<Vec<_>>());
 }
 
+/// A test machine: below the charts over time, without their moment, and with a ring at the present values.
+#[test]
+fn a_chart_against_a_displacement_has_an_axis_of_its_own() {
+    let scene = parse(
+        "time = { duration = 1, step = 1e-3 }\nbody = { lattice = { cells = [4, 1], side = 0.1 }, density = 1000 }\n\
+         run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.5 } }]\n\
+         hold = [{ nodes = 'left' }]\n\
+         grab = [{ nodes = 'right', path.keys = [{ time = 0 }, { time = 0.5, shift = [0.04, 0] }, { time = 1 }] }]\n\
+         view = { size = [1280, 900], charts = [{ plot = 'force', of = 'grab[0]', against = 'grab[0]' }, 'kinetic'] }\n",
+    );
+    let frames = [15, 45].map(|index| Runner::new(&scene, &[0]).frame(index));
+    let pictures = pictures(&scene, &frames);
+    for picture in &pictures {
+        let at = |text: &str| picture.words.iter().find(|word| word.text == text).map(|word| word.baseline);
+        let [time, own] = [at("Kinetic energy"), at("Force of grab[0]")];
+        assert!(time.is_some() && time < own && own < at("against displacement"), "{time:?} {own:?}");
+        assert_eq!((moments(picture).len(), circles(picture).len()), (1, 2));
+        assert!(at("40 mm").is_some_and(|axis| Some(axis) > own), "numbers of its own below it");
+    }
+    // On the way back the force is smaller at the same displacement: damping takes work.
+    let [there, back] = pictures.each_ref().map(|picture| middle(circles(picture)[1]));
+    assert!(back[1] > there[1] + 1.0, "{there:?} {back:?}");
+}
+
 #[test]
 fn several_charts_have_one_axis_of_time() {
     let (mut scene, [frame]) = with_chart(Diagnostic::TurnedOver, [90]);
-    scene.view.charts = vec![Diagnostic::TurnedOver, Diagnostic::Energy];
+    scene.view.charts = vec![Diagnostic::TurnedOver.into(), Diagnostic::Energy.into()];
     scene.view.size = [1280, 840];
     let picture = compose(&scene, &frame);
     let said = |text: &str| picture.words.iter().filter(|word| word.text == text).collect::<Vec<_>>();
@@ -467,7 +491,8 @@ fn several_charts_have_one_axis_of_time() {
     assert_eq!((circles(&picture).len(), said("3 s").len(), said("Mass-spring").len()), (4, 1, 3));
     // Charts without room leave the others in place.
     scene.view.title = "A title".to_owned();
-    scene.view.charts.extend([Diagnostic::Kinetic, Diagnostic::ShapeError, Diagnostic::Elastic, Diagnostic::Momentum]);
+    let more = [Diagnostic::Kinetic, Diagnostic::ShapeError, Diagnostic::Elastic, Diagnostic::Momentum];
+    scene.view.charts.extend(more.map(Into::into));
     let shown = moments(&compose(&scene, &frame)).len();
     assert!((2..6).contains(&shown), "{shown}");
     assert!(left_out(&scene).contains(&format!("only {shown} of 6 charts have room")));

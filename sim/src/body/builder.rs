@@ -145,8 +145,19 @@ impl NewBody {
             None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
         };
         let mass = vec![1.0; rest.len()];
-        let body =
-            Body { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, stiffness: None, modulus: None, carried: None };
+        let body = Body {
+            dimension,
+            rest,
+            mass,
+            elements,
+            kinds,
+            hulls,
+            faces,
+            fill: None,
+            stiffness: None,
+            modulus: None,
+            carried: None,
+        };
         let body = if let Some(masses) = masses { body.with_masses(masses)? } else { body };
         body.with_fill(fill)?.with_stiffness(stiffness)?.with_carried(carried)
     }

@@ -1,8 +1,9 @@
 //! Events in time series, in words. Flags in a chart and in panels mark them.
 
 use super::ring;
-use super::series::Series;
+use super::series::{Series, in_words};
 use crate::colour::Colour;
+use crate::look::Plot;
 use crate::picture::caption::{RECORDING_ENDS, WordRoom, Writer};
 use crate::picture::layout::steps::{GAP, NEAR};
 use crate::picture::layout::{Baselines, Rectangle, Scale};
@@ -35,13 +36,13 @@ pub(in crate::picture) struct Event {
     pub words: [String; 2],
 }
 
-/// The events in time series of a diagnostic of a body of a size (m), up to an end (s), in the order of time.
-pub(in crate::picture) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
+/// The events in time series of a chart of a body of a size (m), up to an end (s), in the order of time.
+pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
     let widest = series
         .iter()
         .flat_map(|one| &one.points)
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at[1]), high.max(at[1])]);
-    let value = |value: f64| number::value(diagnostic, value, extent);
+    let value = |value: f64| in_words(plot, value, extent);
     let event = |one: &Series, time: f64, words: String, joint: &str| Event {
         run: one.run,
         time,
@@ -85,18 +86,18 @@ pub(in crate::picture) fn events(diagnostic: Diagnostic, series: &[Series], exte
 }
 
 /// The possible events of a run of a scene, in the narrowest words.
-pub(in crate::picture) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
+pub(in crate::picture) fn narrowest(plot: &Plot, scene: &Scene) -> Vec<Event> {
     const AT: f64 = 1e-3;
     let event = |words: String, joint: &str| Event {
         run: 0,
         time: AT,
         words: [format!("{words} {joint} {}", number::time(AT)), words],
     };
-    if diagnostic == Diagnostic::TurnedOver {
+    if plot.diagnostic() == Some(Diagnostic::TurnedOver) {
         return vec![event("first turned over".to_owned(), "at"), event("settles at 1".to_owned(), "after")];
     }
     let extent = scene.extent();
-    vec![event(format!("lowest {}", number::value(diagnostic, 0.1 * extent, extent)), "at")]
+    vec![event(format!("lowest {}", in_words(plot, 0.1 * extent, extent)), "at")]
 }
 
 /// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly all changes, if that
@@ -183,6 +184,7 @@ mod tests {
             style,
             is_count,
             points: points.to_vec(),
+            times: Vec::new(),
             members: Vec::new(),
             diverged: None,
             is_end: false,
@@ -190,7 +192,7 @@ mod tests {
     }
 
     fn words(diagnostic: Diagnostic, series: &[Series]) -> Vec<String> {
-        events(diagnostic, series, 0.3, 3.0).into_iter().map(|event| event.words[0].clone()).collect()
+        events(&diagnostic.into(), series, 0.3, 3.0).into_iter().map(|event| event.words[0].clone()).collect()
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The layers of charts: areas, bands, lines and dots.
+//! The layers of charts: areas, bands, lines, traces and dots.
 
 use super::axis::Stretch;
 use super::{Chart, PlotArea};
@@ -33,6 +33,17 @@ pub enum Layer {
     },
     /// A line through points. Where it goes up and down too densely to be seen, it is a band.
     Line {
+        /// The points.
+        points: Vec<[f64; 2]>,
+        /// Its colour.
+        colour: Colour,
+        /// Its width (px).
+        width: f64,
+        /// The lengths of dashes and gaps in turn (px); empty for a solid line.
+        dash: Vec<f64>,
+    },
+    /// A line through points in any order, such as a loop.
+    Trace {
         /// The points.
         points: Vec<[f64; 2]>,
         /// Its colour.
@@ -90,6 +101,12 @@ impl Layer {
                         .iter()
                         .for_each(|&span| band(writer, place, of_line, span, 0.5 * BESIDE * place.line, *colour));
                     for part in outside(&points, &dense).iter().flat_map(|part| pieces(part, place.borders())) {
+                        writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
+                    }
+                }
+                Self::Trace { points, colour, width, dash } => {
+                    let points = points.iter().map(|&[x, y]| [place.x(&chart.x, x), place.y(&chart.y, y)]);
+                    for part in pieces(&points.collect::<Vec<_>>(), place.borders()) {
                         writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
                     }
                 }

@@ -55,7 +55,9 @@ impl Shortened {
     /// The names at the ends of time series that have values.
     pub(super) fn at(&self, series: &[Series]) -> Vec<Name> {
         let name = |(one, text): (&Series, &String)| {
-            Some(Name { text: text.clone(), end: *one.points.last()?, colour: one.style.colour })
+            // A loop ends in the midst of a chart: its rightmost point has the name.
+            let end = one.points.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]))?;
+            Some(Name { text: text.clone(), end, colour: one.style.colour })
         };
         series.iter().zip(&self.names).filter_map(name).collect()
     }

@@ -1,10 +1,11 @@
-//! Time series of a diagnostic of one run, in one scene or as the mean over several, and their range.
+//! Series of one run in a chart, in one scene or as the mean over several, and their range.
 
 use super::layer::{Layer, value};
-use crate::look::{LineStyle, Palette};
+use crate::look::{LineStyle, Measure, Palette, Plot, PlotOf};
 use crate::picture::layout::steps::{HAIR, STRONG};
+use crate::picture::number;
 use crate::runner::history::TimeSeries;
-use crate::scene::Scene;
+use crate::scene::{Reading, Scene};
 use crate::sim::{Diagnostic, Dimension};
 
 /// Values of a diverged run do not determine the scale above this many times the largest value of the other runs.
@@ -14,7 +15,7 @@ const NEAR_ZERO: f64 = 3.0;
 /// A range is at least this part of its values, so that round-off does not fill a chart.
 const LEAST_RANGE: f64 = 0.02;
 
-/// The time series of a diagnostic of one run.
+/// The series of one run in a chart.
 #[derive(Clone, Debug)]
 pub(in crate::picture) struct Series {
     pub run: usize,
@@ -26,10 +27,12 @@ pub(in crate::picture) struct Series {
     pub is_count: bool,
     /// Whether it is of one body of a run: its curve is thin.
     pub is_part: bool,
-    /// Times (s) and finite values, those of counts as steps.
+    /// Times (s), or displacements (m), and finite values, those of counts as steps.
     pub points: Vec<[f64; 2]>,
-    /// For a mean of several scenes, the time series of each: a band shows their least and greatest values. Empty
-    /// otherwise.
+    /// When each of them was there (s); empty for diagnostics, which have the times as points.
+    pub times: Vec<f64>,
+    /// For a mean of several scenes or nodes, the time series between which they lie: a band shows their least and greatest values.
+    /// Empty otherwise.
     pub members: Vec<Vec<[f64; 2]>>,
     /// When the run diverged (s).
     pub diverged: Option<f64>,
@@ -39,18 +42,64 @@ pub(in crate::picture) struct Series {
 
 /// The line of a run in all charts of a picture and beside its name. One chart of counts makes all lines solid: dashed steps
 /// look ragged.
-pub(in crate::picture) fn style(charts: &[Diagnostic], line: LineStyle) -> LineStyle {
-    if charts.contains(&Diagnostic::TurnedOver) { LineStyle { dash: &[], ..line } } else { line }
+pub(in crate::picture) fn style(charts: &[Plot], line: LineStyle) -> LineStyle {
+    if charts.contains(&Diagnostic::TurnedOver.into()) { LineStyle { dash: &[], ..line } } else { line }
 }
 
 impl Series {
-    /// A diagnostic of a run of a scene, with the line of the run.
-    pub(super) fn new(diagnostic: Diagnostic, of_run: &TimeSeries, scene: &Scene, style: LineStyle) -> Self {
-        let values = of_run.diagnostics.iter().map(|all| diagnostic.of(all));
+    /// What the chart at a place among all shows of a run of a scene, with the line of the run.
+    pub(super) fn new(charts: &[Plot], at: usize, of_run: &TimeSeries, scene: &Scene, style: LineStyle) -> Self {
         let diverged = of_run.divergence.map(|divergence| divergence.time);
-        let one = Self::over(diagnostic, of_run, values, style);
+        let one = match &charts[at] {
+            &Plot::Diagnostic(diagnostic) => {
+                Self::over(diagnostic, of_run, of_run.diagnostics.iter().map(|all| diagnostic.of(all)), style)
+            }
+            Plot::Of(of) => {
+                let place = charts[..at].iter().filter_map(Plot::of).count();
+                Self::measured(of, of_run.readings.get(place).map_or(&[], |all| all), of_run, scene, style)
+            }
+        };
         let is_end = of_run.divergence.is_some_and(|divergence| divergence.is_end);
         Self { name: scene.runs[of_run.run].name.clone(), diverged, is_end, ..one }
+    }
+
+    /// What is measured of one thing in a run.
+    fn measured(of: &PlotOf, all: &[Reading], of_run: &TimeSeries, scene: &Scene, style: LineStyle) -> Self {
+        let readings = || of_run.times.iter().copied().zip(all);
+        let over_time = |value: fn(&Reading) -> f64| readings().map(|(time, one)| [time, value(one)]).collect();
+        let whole: Vec<[f64; 2]> = over_time(|one| one.value);
+        let (mut times, mut points, mut members): (Vec<f64>, _, _) = (of_run.times.clone(), whole, Vec::new());
+        if of.against.is_some() {
+            let ways: Vec<[f64; 2]> = over_time(|one| one.against);
+            if of.plot == Measure::Displacement {
+                points.iter_mut().zip(&ways).for_each(|(point, way)| point[0] = way[1]);
+            } else {
+                (times, points) = of_intervals(&points, &ways, scene.interval(of_run.run), scene.runs[of_run.run].step);
+            }
+        } else if all.iter().any(|one| one.range[0] < one.range[1]) {
+            members = vec![over_time(|one| one.range[0]), over_time(|one| one.range[1])];
+        }
+        let is_there = |point: &[f64; 2]| point.iter().all(|number| number.is_finite());
+        let (times, points) = times.into_iter().zip(points).filter(|(_, point)| is_there(point)).unzip();
+        members.iter_mut().for_each(|member| member.retain(is_there));
+        Self { times, members, ..Self::plain(of_run.run, style, points) }
+    }
+
+    /// Points of a run.
+    fn plain(run: usize, style: LineStyle, points: Vec<[f64; 2]>) -> Self {
+        let (name, times, members) = Default::default();
+        Self {
+            run,
+            name,
+            style,
+            is_count: false,
+            is_part: false,
+            points,
+            times,
+            members,
+            diverged: None,
+            is_end: false,
+        }
     }
 
     /// A diagnostic of each body of a run of a scene, if it has several.
@@ -73,8 +122,7 @@ impl Series {
         let points = of_run.times.iter().zip(values).map(|(&time, value)| [time, value]);
         let points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
         let points = if is_count { steps(&points) } else { points };
-        let (name, members) = Default::default();
-        Self { run: of_run.run, name, style, is_count, is_part: false, points, members, diverged: None, is_end: false }
+        Self { is_count, ..Self::plain(of_run.run, style, points) }
     }
 
     /// The mean of a run's time series in several scenes, up to the earliest end. A single one is returned as it is.
@@ -104,7 +152,13 @@ impl Series {
         (self.is_count && !self.is_part).then(|| Layer::Area { points: self.points.clone(), colour: palette.alarm })
     }
 
-    /// Its curve, that of several scenes on a band.
+    /// Its curve against a displacement.
+    pub(super) fn trace(&self) -> Layer {
+        let LineStyle { colour, dash } = self.style;
+        Layer::Trace { points: self.points.clone(), colour, width: STRONG, dash: dash.to_vec() }
+    }
+
+    /// Its curve over time, that of several scenes or nodes on a band.
     pub(super) fn curves(&self) -> impl Iterator<Item = Layer> {
         let LineStyle { colour, dash } = self.style;
         let band = (!self.members.is_empty()).then(|| Layer::Band { curves: self.members.clone(), colour });
@@ -120,6 +174,44 @@ pub(in crate::picture) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'stati
         (Diagnostic::VolumeRatio, Dimension::Plane) => "area ratio",
         _ => diagnostic.name(),
     }
+}
+
+/// The name of what a chart shows of a scene.
+pub(super) fn title(plot: &Plot, scene: &Scene) -> String {
+    let mut name = match plot {
+        Plot::Diagnostic(diagnostic) => name(*diagnostic, scene).to_owned(),
+        Plot::Of(of) => format!("{} of {}", of.plot.words()[0], of.of),
+    };
+    if let Some(first) = name.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    name
+}
+
+/// A value in a chart, with its unit, of a body of a size (m).
+pub(super) fn in_words(plot: &Plot, value: f64, extent: f64) -> String {
+    match plot {
+        Plot::Diagnostic(diagnostic) => number::value(*diagnostic, value, extent),
+        Plot::Of(of) if of.plot == Measure::Displacement => number::length(value, extent),
+        Plot::Of(of) => number::with_unit(value, of.plot.words()[1]),
+    }
+}
+
+/// The mean forces of intervals (s), each against the displacement in its middle, and when each interval ended (s); from the force of the last
+/// interval and the displacement at each time, in a run with a step (s).
+fn of_intervals(forces: &[[f64; 2]], ways: &[[f64; 2]], interval: f64, step: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
+    let (mut times, mut points, mut last) = (Vec::new(), Vec::new(), 0.0);
+    for &[time, force] in forces {
+        // An interval ends with the step nearest to its end.
+        let number = ((time + 0.5 * step) / interval).floor();
+        let middle = value(ways, (number - 0.5) * interval).filter(|_| number > last);
+        if let Some(way) = middle {
+            points.push([way, force]);
+            times.push(time);
+            last = number;
+        }
+    }
+    (times, points)
 }
 
 /// The largest absolute value.
@@ -151,6 +243,15 @@ pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
         Some(ends.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
     });
     ends.map(widened)
+}
+
+/// The range of displacements.
+pub(super) fn ways(series: &[Series]) -> Option<[f64; 2]> {
+    let all = series.iter().flat_map(|one| &one.points).map(|point| point[0]);
+    all.fold(None, |ends: Option<[f64; 2]>, way| {
+        Some(ends.map_or([way; 2], |[low, high]| [low.min(way), high.max(way)]))
+    })
+    .map(widened)
 }
 
 /// A range that is not too narrow and includes zero unless that is far away.

@@ -1,13 +1,14 @@
-//! Charts above each other on one axis of time: a diagnostic of all runs in each, with its name at the left and the
-//! names of the runs at the ends of their curves.
+//! Charts above each other on one axis of time, and below them those against displacements: a quantity of all runs in each, with its name at
+//! the left and the names of the runs at the ends of their curves.
 
 use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
 use super::names::Shortened;
 use super::series::{self, Series};
 use super::{Chart, PlotArea};
+use crate::look::Plot;
 use crate::picture::caption::Writer;
-use crate::picture::layout::steps::{BESIDE, NEAR, ROW, SHORT, SMALL};
+use crate::picture::layout::steps::{BESIDE, MARGIN, NEAR, ROW, SHORT, SMALL};
 use crate::picture::layout::{Room, Scale};
 use crate::picture::number;
 use crate::picture::text::{Fonts, Weight};
@@ -19,13 +20,17 @@ use crate::sim::{Body, Diagnostic};
 
 /// The most numbers beside a chart.
 const MOST_TICKS: usize = 4;
+/// The most numbers along an axis of displacements.
+const MOST_WAYS: usize = 9;
 /// With more curves than this, those of bodies are left out.
 const MOST_CURVES: usize = 12;
 /// The meaning of a band where a curve is dense.
 const BAND: [&str; 2] = ["band:", "least to most"];
 
-/// A diagnostic of several runs over time.
+/// What a chart shows of several runs.
 struct Quantity {
+    /// The place of the chart among all.
+    at: usize,
     name: String,
     /// The lines below the name: its unit, and explanations of the axis, of curves and of bands.
     notes: Vec<String>,
@@ -37,25 +42,28 @@ struct Quantity {
     runs: usize,
     /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
+    /// Whether the axis to the right is that of a displacement, and its range (m).
+    against: Option<Option<[f64; 2]>>,
     /// The size of the body (m).
     extent: f64,
 }
 
 impl Quantity {
-    /// A diagnostic of all runs, as the mean over scenes with runs of the same names, in the colours of a picture, beside
-    /// the charts of others; `label` replaces names of runs.
+    /// The chart of all runs at a place among others, as the mean over scenes with runs of the same names, in the colours of a picture; `label`
+    /// replaces names of runs.
     fn new(
-        diagnostic: Diagnostic,
-        charts: &[Diagnostic],
+        at: usize,
+        charts: &[Plot],
         of_scenes: &[(&Scene, &History)],
         writer: &Writer<'_>,
         label: impl Fn(&str) -> String,
     ) -> Self {
-        let scene = of_scenes[0].0;
+        let (scene, plot) = (of_scenes[0].0, &charts[at]);
+        let diagnostic = plot.diagnostic();
         let one = |(scene, history): &(&Scene, &History), name: &str| {
             let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
             own.map(|own| {
-                Series::new(diagnostic, own, scene, series::style(charts, scene.runs[own.run].line(writer.palette)))
+                Series::new(charts, at, own, scene, series::style(charts, scene.runs[own.run].line(writer.palette)))
             })
         };
         let of_run = |run: usize| {
@@ -68,35 +76,41 @@ impl Quantity {
         // A mean over scenes has no bodies.
         for (own, of_run) in of_scenes[0].1.series.iter().zip(0..runs).filter(|_| of_scenes.len() == 1) {
             let style = series[of_run].style;
-            series.extend(Series::of_bodies(diagnostic, own, scene, style));
+            series.extend(diagnostic.into_iter().flat_map(|one| Series::of_bodies(one, own, scene, style)));
         }
         if series.len() > MOST_CURVES {
             series.truncate(runs);
         }
-        let is_count = matches!(diagnostic, Diagnostic::TurnedOver | Diagnostic::Broken);
-        let mut name = series::name(diagnostic, scene).to_owned();
-        if let Some(first) = name.get_mut(..1) {
-            first.make_ascii_uppercase();
-        }
+        let counted = diagnostic.filter(|one| matches!(one, Diagnostic::TurnedOver | Diagnostic::Broken));
+        let is_count = counted.is_some();
+        let of = plot.of();
         let mut one = Self {
-            name,
+            at,
+            name: series::title(plot, scene),
             notes: Vec::new(),
             kind: if is_count { Kind::Count } else { Kind::Value },
-            unit: diagnostic.unit(),
+            unit: of.map_or_else(|| diagnostic.map_or("", Diagnostic::unit), |of| of.plot.words()[1]),
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
             range: series::range(&series, !is_count),
+            against: (!plot.is_over_time()).then(|| series::ways(&series)),
             series,
             runs,
             extent: scene.extent(),
         };
-        let unit = match one.values(MOST_TICKS) {
-            _ if is_count => of_parts(diagnostic, of_scenes),
-            Some(values) => values.unit,
-            None => "none".to_owned(),
+        let unit = match (counted, one.values(MOST_TICKS)) {
+            (Some(counted), _) => of_parts(counted, of_scenes),
+            (None, Some(values)) => values.unit,
+            (None, None) => "none".to_owned(),
         };
         let has_zero = one.range.is_none_or(|[low, high]| low <= 0.0 && high >= 0.0);
         let unit = [&*unit, if has_zero { "" } else { "not from zero" }].into_iter().filter(|text| !text.is_empty());
         one.notes = Vec::from_iter(Some(unit.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty()));
+        if let Some(against) = of.and_then(|of| of.against.as_ref()) {
+            let other = of.is_some_and(|of| of.of != *against).then(|| format!("of {against}"));
+            one.notes.extend(["against displacement".to_owned()].into_iter().chain(other));
+        } else if of.is_some() && one.series.iter().any(|series| !series.members.is_empty()) && of_scenes.len() == 1 {
+            one.notes.push("mean, range".to_owned());
+        }
         if of_scenes.len() > 1 {
             one.notes.push(format!("{} scenes: mean, range", of_scenes.len()));
         }
@@ -108,15 +122,21 @@ impl Quantity {
         self.range.map(|range| Stretch::new(self.kind, range, self.unit, self.extent, most))
     }
 
-    /// The chart over an axis of time, at a place.
-    fn chart(&self, x: Axis, writer: &Writer<'_>, place: PlotArea) -> Chart {
+    /// The chart over an axis of time, or an own axis of displacements, at a place.
+    fn chart(&self, time: Axis, writer: &Writer<'_>, place: PlotArea) -> Chart {
         let rows = ((place.bottom - place.top) / (ROW * place.unit)) as usize + 1;
         let y = Axis(self.values(rows.min(MOST_TICKS)).into_iter().collect());
+        if let Some(ways) = self.against {
+            let most = ((place.right - place.left) / (2.0 * MARGIN * place.unit)) as usize;
+            let x = ways.map(|ways| Stretch::new(Kind::Value, ways, "m", self.extent, most.clamp(2, MOST_WAYS)));
+            let layers = if y.0.is_empty() { Vec::new() } else { self.series.iter().map(Series::trace).collect() };
+            return Chart { x: Axis(x.into_iter().collect()), y, layers, annotations: Vec::new() };
+        }
         let areas = self.series.iter().filter_map(|one| one.area(writer.palette));
         let layers = areas.chain(self.series.iter().flat_map(Series::curves));
         let layers = layers.filter(|_| !y.0.is_empty()).collect();
         let crosses = self.series.iter().filter(|one| !one.points.is_empty()).filter_map(cross);
-        Chart { x, layers, annotations: crosses.collect(), y }
+        Chart { x: time, layers, annotations: crosses.collect(), y }
     }
 
     /// The width of the numbers beside it (px), for any number of ticks, with the gap to its name.
@@ -192,12 +212,12 @@ pub(in crate::picture) struct Stack {
 }
 
 impl Stack {
-    /// Charts of diagnostics, each with the time series of scenes, with a width for the names of runs (px).
+    /// Charts, each with the time series of scenes, with a width for the names of runs (px).
     ///
     /// # Panics
     /// If there is no scene.
     pub(in crate::picture) fn new(
-        diagnostics: &[Diagnostic],
+        charts: &[Plot],
         of_scenes: &[(&Scene, &History)],
         writer: &Writer<'_>,
         room: f64,
@@ -205,8 +225,9 @@ impl Stack {
     ) -> Self {
         let (fonts, scale) = (writer.fonts, writer.scale);
         let unit = scale.type_unit();
-        let quantities = diagnostics.iter().map(|&one| Quantity::new(one, diagnostics, of_scenes, writer, &label));
-        let quantities: Vec<_> = quantities.collect();
+        let quantities = (0..charts.len()).map(|at| Quantity::new(at, charts, of_scenes, writer, &label));
+        let mut quantities: Vec<_> = quantities.collect();
+        quantities.sort_by_key(|one| one.against.is_some());
         let widest = |wide: &dyn Fn(&Quantity) -> f64| quantities.iter().map(wide).fold(0.0, f64::max);
         Self {
             // The lines of all charts have the same names.
@@ -232,9 +253,19 @@ impl Stack {
         self.quantities.len()
     }
 
-    /// The time series of runs in the first chart.
-    pub(super) fn first(&self) -> &[Series] {
-        self.quantities.first().map_or(&[], |one| &one.series[..one.runs])
+    /// The number of charts over time, which come first.
+    pub(in crate::picture) fn over_time(&self) -> usize {
+        self.quantities.iter().filter(|one| one.against.is_none()).count()
+    }
+
+    /// The place of the first chart over time among all, with the time series of runs.
+    pub(super) fn first(&self) -> (usize, &[Series]) {
+        self.runs().next().filter(|_| self.over_time() > 0).unwrap_or_default()
+    }
+
+    /// The places of the charts among all, in the order in which they are drawn, each with the series of runs.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (usize, &[Series])> {
+        self.quantities.iter().map(|one| (one.at, &one.series[..one.runs]))
     }
 
     /// Draws as many charts as have room, over a span of time whose scale may change between (s): what lies below the
@@ -255,14 +286,15 @@ impl Stack {
             (one.chart(x.clone(), ground, place), place)
         });
         let mut placed: Vec<_> = placed.collect();
-        let Some((first, last)) = placed.first().zip(placed.last()) else { return placed };
-        flags(ground, marked, room.rings, (&first.0, first.1), last.1.bottom);
-        let count = placed.len();
+        let over_time = self.over_time().min(placed.len());
+        if let [first, ..] = &placed[..over_time] {
+            flags(ground, marked, room.rings, (&first.0, first.1), placed[over_time - 1].1.bottom);
+        }
         for (at, (one, (chart, place))) in self.quantities.iter().zip(&mut placed).enumerate() {
             if let Some(names) = self.ends.as_ref().map(|ends| ends.at(&one.series)) {
                 chart.annotations.push(Annotation::Names { names, beyond: [room.beyond; 2] });
             }
-            chart.ground(ground, *place, at + 1 == count);
+            chart.ground(ground, *place, at + 1 >= over_time);
             chart.curves(curves, *place);
             let Some(left) = room.names else { continue };
             let mut notes: Vec<_> = one.notes.iter().map(|note| &**note).collect();

@@ -1,13 +1,14 @@
 //! The bodies of a run: the data that all their pictures share. Runs of the same bodies share it, too.
 
 use super::overlay::bearers;
+use crate::look::BODIES;
 use crate::picture::ears::{Ears, bare_elements};
 use crate::picture::shadow;
 use crate::picture::shell::is_broken;
 use crate::picture::skin::Skin;
 use crate::picture::tally::Tally;
 use crate::picture::wire::Edges;
-use crate::scene::{Run, Scene};
+use crate::scene::{Run, Scene, SceneBody};
 use crate::sim::{Assembly, Body, Dimension, Snapshot};
 use glam::DVec3;
 use std::ops::Range;
@@ -47,6 +48,8 @@ pub(super) struct Bodies<'a> {
     pub(super) edges: Edges,
     /// The nodes with arrows.
     pub(super) bearers: Vec<u32>,
+    /// The place of each element among the colours of bodies and regions; empty for one body without regions.
+    pub(super) colours: Vec<u8>,
 }
 
 impl<'a> Bodies<'a> {
@@ -80,6 +83,7 @@ impl<'a> Bodies<'a> {
             bearers: if view.visible.displacements { bearers(body, of_elements, &bare) } else { Vec::new() },
             parts: skin.parts(assembly),
             inside: skin.inside(assembly),
+            colours: colours(scene, run),
             skin,
             cage,
             ears,
@@ -122,4 +126,23 @@ impl<'a> Bodies<'a> {
 fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
     let at = |node: u32| position[node as usize].truncate() - position[nodes[0] as usize].truncate();
     nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
+}
+
+/// The place of each element of a run among the colours of bodies and regions; none for one body without regions.
+fn colours(scene: &Scene, run: &Run) -> Vec<u8> {
+    let (regions, first) = (scene.names_of_regions(), scene.most_bodies());
+    if run.of.len() == 1 && scene.bodies[run.of[0]].regions.is_empty() {
+        return Vec::new();
+    }
+    let place = |place: usize| (place % BODIES) as u8;
+    let of_body = |(at, body): (usize, &usize)| {
+        let SceneBody { body, regions: own, .. } = &scene.bodies[*body];
+        let mut colours = vec![place(at); body.elements().len()];
+        for region in own {
+            let number = regions.iter().position(|name| *name == region.name).unwrap_or_default();
+            region.elements.iter().for_each(|&element| colours[element as usize] = place(first + number));
+        }
+        colours
+    };
+    run.of.iter().enumerate().flat_map(of_body).collect()
 }

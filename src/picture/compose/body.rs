@@ -54,7 +54,7 @@ impl Draft<'_> {
             element: self.element,
             flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),
-            coloured: self.bodies.assembly().bodies().len() > 1 && self.shades.is_none(),
+            colours: if self.shades.is_none() { &self.bodies.colours } else { &[] },
         };
         let (over, broken) = (&self.run.snapshot.turned_over, &self.run.snapshot.broken);
         let fine = &self.bodies.skin.fine;

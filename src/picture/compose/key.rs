@@ -14,13 +14,15 @@ impl Composer<'_> {
         explained.filter_map(|overlay| overlay.sample(self, place)).chain(self.samples_of_bodies()).collect()
     }
 
-    /// A sample of each colour of bodies, with the names of its bodies.
+    /// A sample of each colour of bodies and regions, with their names. A single body needs none.
     fn samples_of_bodies(&self) -> impl Iterator<Item = Sample<'_>> {
         let (names, palette) = (self.scene.view.coloured_bodies(), &self.palette);
         let colours = if self.scene.is_lit() { palette.bodies } else { palette.bodies_flat };
-        colours.into_iter().enumerate().take(names.len()).map(move |(at, colour)| {
-            let names: Vec<_> = names.iter().skip(at).step_by(BODIES).map(String::as_str).collect();
-            Sample { names: vec![names.join(", ").into()], kind: SampleKind::Body([colour, palette.outline]) }
+        colours.into_iter().enumerate().take(names.len()).filter_map(move |(at, colour)| {
+            let names = names.iter().skip(at).step_by(BODIES).map(String::as_str);
+            let names: Vec<_> = names.filter(|name| !name.is_empty()).collect();
+            let kind = SampleKind::Body([colour, palette.outline]);
+            (!names.is_empty()).then(|| Sample { names: vec![names.join(", ").into()], kind })
         })
     }
 

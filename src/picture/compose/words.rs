@@ -50,6 +50,7 @@ impl<'a> Words<'a> {
         let wanted = Wanted {
             titles: titles.each_ref().map(Vec::len),
             charts: [view.charts.len(), panels],
+            own_axes: view.charts.iter().filter(|plot| !plot.is_over_time()).count(),
             legend: legend.map(|legend| legend.height),
             ..Wanted::default()
         };
@@ -144,10 +145,14 @@ impl<'a> Words<'a> {
         let in_panels: Vec<_> = layout.written.left_out.iter().copied().filter(is_missed).collect();
         let mut told = layout::told(&layout.parts, &in_panels);
         let writer = self.writer(layout.scale);
-        if let Some((&diagnostic, &panel)) =
-            view.charts.first().zip(layout.panels.first()).filter(|_| layout.written.events)
+        if let Some((plot, &panel)) = view
+            .charts
+            .iter()
+            .find(|plot| plot.is_over_time())
+            .zip(layout.panels.first())
+            .filter(|_| layout.written.events)
         {
-            let events = event::narrowest(diagnostic, self.scene);
+            let events = event::narrowest(plot, self.scene);
             if writer.explained(panel, &events.iter().collect::<Vec<_>>()) < events.len() {
                 told.push("panels do not name all possible events of the chart".to_owned());
             }

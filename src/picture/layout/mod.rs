@@ -21,7 +21,7 @@ pub(super) mod steps;
 pub(super) mod tree;
 
 use super::legend::Legend;
-use crate::look::{Labels, View, print};
+use crate::look::{Labels, Plot, View, print};
 use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, NEAR, ROW, SHORT, SMALL, TALL_ROW, TILE};
 use tree::{Node, Place, Solved};
 
@@ -32,6 +32,8 @@ const PANELS: [f64; 2] = [0.45, 0.36];
 const BODY: f64 = 0.46;
 /// The largest part of a picture for a chart.
 const CHART_SHARE: f64 = 0.3;
+/// The largest part of the height of a page for a chart with an axis of its own.
+const OWN_SHARE: f64 = 0.4;
 /// The most lines of titles, and the most names at the ends of curves that make a chart higher.
 const MOST_LINES: usize = 4;
 const MOST_NAMES: usize = 10;
@@ -157,6 +159,8 @@ pub(super) struct Wanted {
     pub(super) headings: usize,
     /// The number of charts, and of the names at the ends of their curves.
     pub(super) charts: [usize; 2],
+    /// How many of the charts, the last ones, have an axis of their own.
+    pub(super) own_axes: usize,
     /// The height of a key of colours and arrows (px).
     pub(super) legend: Option<f64>,
 }
@@ -164,7 +168,8 @@ pub(super) struct Wanted {
 /// The boxes of a page with some rows of panels, from top to bottom.
 pub(super) fn page(scale: Scale, wanted: Wanted, rows: impl Iterator<Item = Node<Part>>) -> Vec<Node<Part>> {
     let (unit, type_unit) = (scale.unit, scale.type_unit());
-    let Wanted { titles: [title, caption], is_figure, clock, headings, charts: [charts, names], legend } = wanted;
+    let Wanted { titles: [title, caption], is_figure, clock, headings, charts: [charts, names], own_axes, legend } =
+        wanted;
     let lines = |part: Part, count: usize, gap: f64| {
         let too_many = move |at: usize| part == Part::Title && at >= MOST_LINES;
         let apart = move |at: usize| if at == 0 { gap * unit } else { 0.0 };
@@ -178,11 +183,13 @@ pub(super) fn page(scale: Scale, wanted: Wanted, rows: impl Iterator<Item = Node
     // The names at the ends of curves need room above each other. Curves do not grow with words.
     let names = (names.min(MOST_NAMES) as f64 * GAP - (CHART - NAME_ROW)).max(0.0) * type_unit;
     let charts = (0..charts).map(|at| {
-        let words = if at == 0 { NAME_ROW + SHORT } else { APART } * type_unit;
+        let has_own = at + own_axes >= charts;
+        let words = if at == 0 { NAME_ROW + SHORT } else { APART + if has_own { SHORT } else { 0.0 } } * type_unit;
         let is_legible = Scale::legible(Part::Chart.size(scale));
         let gap = if at == 0 { GAP * unit } else { 0.0 };
-        let chart = Node::new(Part::Chart, words + names + (CHART - NAME_ROW - SHORT) * unit);
-        let chart = chart.least(words + APART * unit).most(TILE * unit).share(CHART_SHARE);
+        let [high, share] = if has_own { [TILE, OWN_SHARE] } else { [CHART, CHART_SHARE] };
+        let chart = Node::new(Part::Chart, words + names + (high - NAME_ROW - SHORT) * unit);
+        let chart = chart.least(words + APART * unit).most(TILE.max(high) * unit).share(share);
         // Of several charts, as many are drawn as have room.
         chart.after(if is_legible { gap } else { f64::INFINITY }).rank(if at == 0 { 3 } else { 1 })
     });
@@ -218,12 +225,12 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// The room between two sides in the boxes of a page, with a place for the names of the charts; `None` without boxes.
-    /// Rings need room above the charts.
+    /// The room between two sides in the boxes of a page, with a place for the names of the charts, of which so many are over time and the
+    /// others twice as high; `None` without boxes. Rings need room above the charts.
     pub(super) fn new(
         page: &Solved<Part>,
         scale: Scale,
-        span: [f64; 2],
+        (span, over_time): ([f64; 2], usize),
         names: Option<f64>,
         has_rings: bool,
     ) -> Option<Self> {
@@ -231,13 +238,18 @@ impl Room {
         let whole: f64 = page.all(Part::Chart).map(|place| place[3]).sum();
         let top = page.get(Part::Chart)?[1];
         let above = if has_rings { NAME_ROW } else { GAP };
-        let words = (above + SHORT + (count as f64 - 1.0) * APART) * unit;
-        let (first, height) = (top + above * unit, (whole - words) / count as f64);
-        let chart = |at: usize| {
-            let top = first + at as f64 * (height + APART * unit);
-            [top, top + height].map(f64::round)
+        // Numbers below the last chart over time, and below each of the others.
+        let has_axis = |at: usize| at + 1 >= over_time.min(count);
+        let below = |at: usize| (APART + if has_axis(at) { SHORT } else { 0.0 }) * unit;
+        let parts = |at: usize| if at < over_time { 1.0 } else { 2.0 };
+        let words = above * unit + (0..count).map(below).sum::<f64>() - APART * unit;
+        let height = (whole - words) / (0..count).map(parts).sum::<f64>();
+        let chart = |top: &mut f64, at: usize| {
+            let own = [*top, *top + parts(at) * height].map(f64::round);
+            *top += parts(at) * height + below(at);
+            Some(own)
         };
-        let charts = (0..count).map(chart).collect();
+        let charts = (0..count).scan(top + above * unit, chart).collect();
         Some(Self { rings: top + BESIDE * unit, span: span.map(f64::round), names, charts, beyond: BESIDE * unit })
     }
 }
@@ -324,7 +336,7 @@ pub(super) struct WordsShown {
 pub(super) fn written(view: &View, height: f64, unit: f64) -> WordsShown {
     let scale = Scale::at(unit).within(view);
     let Labels { letters, name, model, clock, count, number, scale_bar, .. } = view.labels;
-    let (second, events) = (model || clock, !view.charts.is_empty());
+    let (second, events) = (model || clock, view.charts.iter().any(Plot::is_over_time));
     let [has_heading, has_numbers] = [letters || name || second || events, count || number || scale_bar];
     let edge = |end: usize, has_words| Node::new(Part::Edge, if has_words { scale.edges[end] } else { ROW } * unit);
     let row = |part, height: f64, rank: u8| Node::new(part, height).rank(rank);
@@ -524,7 +536,7 @@ mod tests {
 
     /// A view of a size with a title and a chart.
     fn view(size: [u32; 2]) -> View {
-        let charts = vec![crate::sim::Diagnostic::TurnedOver];
+        let charts = vec![crate::sim::Diagnostic::TurnedOver.into()];
         View { size, title: "Title".to_owned(), charts, ..View::default() }
     }
 

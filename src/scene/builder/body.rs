@@ -1,8 +1,9 @@
 //! Bodies made in code.
 
+use super::NodeSet;
 use crate::scene::file::{
-    BarsFile, BodyFile, Cells, Coordinates, DiscFile, FillFile, FillKind, Lattice, PolygonFile, Positive, Rotation,
-    SideFile, SpinFile, Start, StartShape, Up,
+    BarsFile, BodyFile, Cells, CellsFile, Coordinates, DiscFile, FillFile, FillKind, Lattice, PolygonFile, Positive,
+    Rotation, SideFile, SpinFile, Start, StartShape, Up,
 };
 use localshape_mesh::Fill;
 
@@ -72,6 +73,12 @@ impl BodyBuilder {
         Self(BodyFile { mesh: Some(file.into()), ..BodyFile::default() })
     }
 
+    /// Adds a region with a material of its own.
+    pub fn region(mut self, region: RegionBuilder) -> Self {
+        self.0.region.push(region.0);
+        self
+    }
+
     setters! {
         /// The elements that fill the surface of [`Self::mesh`], with sides (m). Without it, 20 cubes along its longest side.
         fill(fill: Fill) 0.fill = Some(FillFile::of(fill));
@@ -120,6 +127,27 @@ impl BodyBuilder {
         velocity(velocity: impl Into<Coordinates>) 0.velocity = Some(velocity.into());
         /// A rigid spin about the mean of the nodes: the rotation in one second (rad/s).
         spin(rotation: Rotation) 0.spin = Some(SpinFile { axis: rotation.axis, rate: rotation.angle });
+    }
+}
+
+/// A region of a body with a material of its own.
+#[derive(Clone, Debug)]
+#[must_use = "a builder makes nothing until its scene is built"]
+pub struct RegionBuilder(CellsFile);
+
+impl RegionBuilder {
+    /// A region with a name, of a list of elements, of those whose middle starts in a ball or a box, or of those with a corner on a side.
+    pub fn new(name: impl Into<String>, cells: NodeSet) -> Self {
+        Self(CellsFile { name: name.into(), cells: cells.nodes, stiffness: None, young: None, density: None })
+    }
+
+    setters! {
+        /// Its stiffness and its damping relative to those of the model.
+        stiffness(factor: f64) 0.stiffness = Some(factor);
+        /// Its Young's modulus (Pa; N/m in the plane), if all models of the body have the same.
+        young(modulus: f64) 0.young = Some(modulus);
+        /// Its density (kg/m³; in the plane kg/m²), if the body has one.
+        density(density: f64) 0.density = Some(density);
     }
 }
 

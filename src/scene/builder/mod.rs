@@ -19,7 +19,7 @@ mod nodes;
 mod obstacle;
 mod run;
 
-pub use body::BodyBuilder;
+pub use body::{BodyBuilder, RegionBuilder};
 pub use contact::{ContactBuilder, PairBuilder};
 pub use load::LoadBuilder;
 pub use nodes::NodeSet;
@@ -28,15 +28,15 @@ pub use run::RunBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, Positive, RunFile, SceneFile, StartFile, StepFile, TimeFile,
+    Coordinates, GrabFile, HoldFile, MotionPath, Positive, ProbeFile, RunFile, SceneFile, StartFile, StepFile, TimeFile,
 };
 use super::resolve::Typed;
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
 use super::{Limits, Scene, structure};
-use crate::look::{Theme, TypedView};
+use crate::look::{Plot, Theme, TypedView};
 use crate::reading::collector::Collector;
-use crate::sim::{Diagnostic, Field, Integrator};
+use crate::sim::{Field, Integrator};
 use serde::Serialize;
 use serde_json::json;
 use std::ops::{Bound, RangeBounds};
@@ -103,6 +103,7 @@ impl Scene {
             hold: Vec::new(),
             grab: Vec::new(),
             load: Vec::new(),
+            probe: Vec::new(),
             view: TypedView::default(),
         };
         SceneBuilder { file, time }
@@ -187,6 +188,13 @@ impl SceneBuilder {
         self
     }
 
+    /// Gives nodes a name, and measures their displacement.
+    pub fn probe(mut self, name: impl Into<String>, nodes: NodeSet) -> Self {
+        let NodeSet { body, nodes } = nodes;
+        self.file.probe.push(Some(ProbeFile { name: name.into(), body, nodes }));
+        self
+    }
+
     /// Width and height of pictures (px).
     pub fn size(self, size: [u32; 2]) -> Self {
         self.show("size", size)
@@ -202,9 +210,9 @@ impl SceneBuilder {
         self.show("colour", json!({ "by": field }))
     }
 
-    /// Plots diagnostics over time below all panels.
-    pub fn charts(self, diagnostics: impl IntoIterator<Item = Diagnostic>) -> Self {
-        self.show("charts", diagnostics.into_iter().collect::<Vec<_>>())
+    /// Plots diagnostics over time below all panels, or what is [measured of one thing](crate::look::PlotOf).
+    pub fn charts(self, plots: impl IntoIterator<Item = impl Into<Plot>>) -> Self {
+        self.show("charts", plots.into_iter().map(Into::into).collect::<Vec<Plot>>())
     }
 
     /// The direction of the camera: azimuth to the right, and elevation above the horizon (rad).

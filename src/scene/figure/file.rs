@@ -1,9 +1,9 @@
 //! The structs that figure files are read into. The documentation of their fields is part of messages and of the
 //! schema, against which files are checked.
 
-use crate::look::Theme;
 use crate::look::file::ColourFile;
 use crate::look::print::{SizeFile, TextScaleFile};
+use crate::look::{Plot, Theme};
 use crate::sim::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,10 +56,11 @@ pub(super) struct SheetFile {
     pub(super) row: Vec<RowFile>,
     /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`.
     /// Several scenes of equal duration, such as one body with several seeds, have a curve for each run: the mean over
-    /// the scenes, in a band from the least to the greatest value. Default: none.
+    /// the scenes, in a band from the least to the greatest value. Also what is measured of one thing, as in
+    /// `view.charts` of scenes; of one scene only against a displacement. Default: none.
     #[serde(default)]
     #[schemars(length(max = 6))]
-    pub(super) charts: Vec<Diagnostic>,
+    pub(super) charts: Vec<Plot>,
     /// A diagnostic written below each picture, such as `"volume_ratio"`. Default: none.
     pub(super) number: Option<Diagnostic>,
     /// A scalar field that colours all bodies, such as `{ by = "strain" }`, with one colour bar. By default the bar

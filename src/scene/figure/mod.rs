@@ -12,7 +12,7 @@ use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, Document, stem};
 use super::schema::schema_of;
-use crate::look::{Print, Style, Theme};
+use crate::look::{Plot, Print, Style, Theme};
 use crate::reading::setting::Setting;
 use crate::sim::Diagnostic;
 use serde_json::Value;
@@ -56,8 +56,8 @@ pub struct Sheet {
     pub columns: Vec<Column>,
     /// The rows, from top to bottom.
     pub rows: Vec<Row>,
-    /// Diagnostics over time below the pictures. With them, all columns show the first scene.
-    pub charts: Vec<Diagnostic>,
+    /// Charts below the pictures. With them, all columns show the first scene.
+    pub charts: Vec<Plot>,
     /// The diagnostic written below each picture.
     pub number: Option<Diagnostic>,
     /// The start of the time axis (s).

@@ -3,10 +3,9 @@
 use super::file::{ColumnFile, RowFile, SheetFile};
 use super::resolve::{Scenes, share_lines};
 use super::{Column, Row, Sheet};
-use crate::look::{self, Subject};
+use crate::look::{self, Plot, Subject};
 use crate::reading::collector::key_path;
 use crate::scene::{Scene, SceneError};
-use crate::sim::Diagnostic;
 use std::mem::take;
 
 impl Scenes<'_, '_, '_> {
@@ -95,7 +94,7 @@ impl Scenes<'_, '_, '_> {
     }
 
     /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
-    fn check_times(&mut self, charts: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
+    fn check_times(&mut self, charts: &[Plot], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
         let at = |key: &'static str| key_path!["sheet", key];
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
             if charts.is_empty() {

@@ -1,6 +1,6 @@
 //! The body as typed.
 
-use super::{Coordinates, Positive};
+use super::{Coordinates, NodesFile, Positive};
 use localshape_mesh::Fill;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize, Serializer};
@@ -146,6 +146,10 @@ pub(in crate::scene) struct BodyFile {
     /// no element with a volume.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass_total: Option<f64>,
+    /// Regions with a material of their own, such as a stiff core: `[[body.region]]`. They have colours of their own in pictures, but for
+    /// surfaces that a filled body carries. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(in crate::scene) region: Vec<CellsFile>,
     /// A rotation about the mean of the nodes. Default: none.
     pub(in crate::scene) rotation: Option<Rotation>,
     /// A translation after the rotation (m). Default: none.
@@ -161,6 +165,30 @@ pub(in crate::scene) struct BodyFile {
 /// Writes in place of a list, which may have millions of entries, whether it has any.
 fn begun<T, S: Serializer>(list: &Option<Vec<T>>, serializer: S) -> Result<S::Ok, S::Error> {
     list.as_ref().map(|list| &[true][..list.len().min(1)]).serialize(serializer)
+}
+
+/// A region of a body with a material of its own.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("not" = { "required": ["stiffness", "young"] }))]
+pub(in crate::scene) struct CellsFile {
+    /// Its name, for the key of pictures.
+    #[schemars(length(min = 1, max = 80))]
+    pub(in crate::scene) name: String,
+    /// Its elements: those whose middle starts in a ball, `{ of = [0, 0.5, 0], within = 0.2 }`, or in a box, `{ low = [0, 0, 0], high = [1, 1, 1] }`;
+    /// those with a corner on a side of the rest shape, such as `"top"`; those with all corners in a group of a mesh file; or a list of
+    /// elements, counted from 0.
+    pub(in crate::scene) cells: NodesFile,
+    /// Its stiffness and its damping relative to those of the model.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) stiffness: Option<f64>,
+    /// Its Young's modulus (Pa; in the plane N/m), in place of `stiffness`, if all models of the body have the same `young`. Its damping is
+    /// in proportion, its Poisson's ratio that of the model.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) young: Option<f64>,
+    /// Its density (kg/m³; in the plane kg/m²), if the body has a `density`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) density: Option<f64>,
 }
 
 /// The elements that fill a surface.

@@ -13,12 +13,12 @@ mod run;
 mod time;
 
 pub(in crate::scene) use body::{
-    BarsFile, BodyFile, DiscFile, FillFile, FillKind, LISTS, PolygonFile, SideFile, SpinFile,
+    BarsFile, BodyFile, CellsFile, DiscFile, FillFile, FillKind, LISTS, PolygonFile, SideFile, SpinFile,
 };
 pub use body::{Cells, Lattice, Rotation, Start, StartShape, Up};
 pub(in crate::scene) use contact::{ContactFile, ContactRule, PairFile};
 pub(in crate::scene) use load::{LoadFile, TorqueFile};
-pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
+pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, ProbeFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 pub(in crate::scene) use run::{ModelFile, RunFile, RunSource, StatesFile};
@@ -71,6 +71,10 @@ pub(in crate::scene) struct SceneFile {
     #[serde(default)]
     #[schemars(with = "Vec<LoadFile>")]
     pub(in crate::scene) load: Vec<Option<LoadFile>>,
+    /// Nodes with a name, whose displacement is in result files, and which charts can show. Default: none.
+    #[serde(default)]
+    #[schemars(with = "Vec<ProbeFile>")]
+    pub(in crate::scene) probe: Vec<Option<ProbeFile>>,
     /// How the scene is drawn.
     #[serde(default)]
     #[schemars(with = "View")]

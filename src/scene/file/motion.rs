@@ -87,6 +87,19 @@ pub(in crate::scene) struct GrabFile {
     pub(in crate::scene) path: MotionPath,
 }
 
+/// Nodes whose displacement since the start is measured: columns of `diagnostics.csv`, peaks in `run.json`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct ProbeFile {
+    /// Its name, which charts and columns use. No other probe, obstacle or body has it.
+    #[schemars(length(min = 1, max = 80))]
+    pub(in crate::scene) name: String,
+    /// The name of their body. Default: all bodies.
+    pub(in crate::scene) body: Option<String>,
+    /// The nodes, as in `[[hold]]`.
+    pub(in crate::scene) nodes: NodesFile,
+}
+
 /// Some nodes of bodies.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]

@@ -148,6 +148,14 @@ impl ModelFile {
         matches!(self, Self::Own(_))
     }
 
+    /// The Young's modulus that is given (Pa; N/m in the plane).
+    pub(in crate::scene) fn young(&self) -> Option<f64> {
+        match self {
+            Self::Typed(parameters) => serde_json::to_value(parameters).ok()?.get("young")?.as_f64(),
+            Self::Own(_) => None,
+        }
+    }
+
     /// The most springs of the model on a body, by the number of elements with each number of nodes and of listed
     /// springs.
     pub(in crate::scene) fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {

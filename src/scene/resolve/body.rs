@@ -3,7 +3,7 @@
 use super::lists::Lists;
 use super::motion::axis;
 use super::table::{BodyTable, Content};
-use super::{KeyPath, Typed, direction, elements, mass, mesh, vector};
+use super::{KeyPath, Typed, direction, elements, mass, mesh, regions, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
@@ -117,14 +117,15 @@ impl<'a> TypedBody<'a> {
         }
     }
 
-    /// The body, or `None` after reporting every mistake in it.
-    pub(super) fn resolve(self, report: &mut Collector<'_>) -> Option<SceneBody> {
+    /// The body, or `None` after reporting every mistake in it. Its models have these moduli, if they have any.
+    pub(super) fn resolve(self, young: &[Option<f64>], report: &mut Collector<'_>) -> Option<SceneBody> {
         let Self { table, content, .. } = self;
-        match content {
-            Content::Generated(generator) => generated(&table, generator, report),
-            Content::Listed(lists, groups) => Some(SceneBody { groups, ..listed(&table, *lists, report)? }),
-            Content::Filled(of, side) => filled(&table, *of, side, report),
-        }
+        let body = match content {
+            Content::Generated(generator) => generated(&table, generator, report)?,
+            Content::Listed(lists, groups) => SceneBody { groups, ..listed(&table, *lists, report)? },
+            Content::Filled(of, side) => filled(&table, *of, side, report)?,
+        };
+        regions::apply(&table, body, young, report)
     }
 }
 

@@ -17,7 +17,9 @@ mod mesh;
 mod motion;
 mod nodes;
 mod obstacles;
+mod probes;
 mod recordings;
+mod regions;
 mod rest;
 mod runs;
 mod steps;
@@ -28,7 +30,7 @@ use super::file::{BodyFile, Positive, SceneFile, TimeFile};
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
 use super::typed::typed;
-use super::{ALL_BODIES, Run, Scene, SceneBody, subject};
+use super::{ALL_BODIES, Probe, Run, Scene, SceneBody, subject};
 use crate::look::{self, FontFiles, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
@@ -71,6 +73,7 @@ struct Physics {
     obstacles: Option<Vec<Obstacle>>,
     /// `None` also for contact of nodes.
     contacts: Option<Contacts>,
+    probes: Option<Vec<Probe>>,
     runs: Option<Vec<Run>>,
     /// Digests of the files of bodies and runs.
     files: FileDigests,
@@ -119,6 +122,7 @@ impl<'a> Typed<'a> {
             obstacles: physics.obstacles?,
             obstacle_names: obstacles::names(file),
             contacts: physics.contacts,
+            probes: physics.probes?,
             view: view?,
             warnings: Vec::new(),
         };
@@ -168,6 +172,7 @@ impl<'a> Typed<'a> {
         }
         let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&file.hold, &file.grab, bodies, report));
         let loads = bodies.as_ref().and_then(|bodies| loads::resolve(&file.load, bodies, report));
+        let probes = bodies.as_ref().and_then(|bodies| probes::resolve(self, bodies, report));
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);
         }
@@ -179,7 +184,7 @@ impl<'a> Typed<'a> {
         });
         let (runs, own) = runs.unzip();
         bodies.iter_mut().zip(own).for_each(|(bodies, own)| bodies.extend(own));
-        Physics { gravity, bodies, obstacles, contacts, runs, files }
+        Physics { gravity, bodies, obstacles, contacts, probes, runs, files }
     }
 
     /// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.
@@ -252,7 +257,11 @@ fn bodies<'a>(
     let runs: Vec<limits::RunBodies<'a>> = choices.iter().map(|choice| run(choice.as_ref())).collect();
     let less = |body: usize| typed[body].as_ref().map_or("", TypedBody::less);
     let Some(Excess { message, help, of }) = limits::excess(&sizes, &runs, limits, less) else {
-        return typed.into_iter().map(|body| body?.resolve(report)).collect();
+        let young = |at: usize| {
+            let all = choices.iter().flatten().flat_map(|choice| choice.of.iter().zip(&choice.models));
+            all.filter(|(of, _)| **of == at).map(|(_, typed)| typed.model.young()).collect::<Vec<_>>()
+        };
+        return typed.into_iter().enumerate().map(|(at, body)| body?.resolve(&young(at), report)).collect();
     };
     match of {
         limits::Largest::Body(body) => {

@@ -23,13 +23,75 @@ impl<'a> Layered<'a> {
         Self { body, layers: OnceCell::new() }
     }
 
-    /// The nodes that start where a region with some round-off (m) is.
-    fn inside(&self, is_inside: impl Fn(DVec3, f64) -> bool) -> Vec<u32> {
-        // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
-        let close = ROUND_OFF * self.body.body.extent();
-        let position = (0..).zip(&self.body.initial.position);
-        position.filter(|(_, at)| is_inside(**at, close)).map(|(node, _)| node).collect()
+    /// The distance (m) within which places are equal: the end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
+    pub(super) fn round_off(&self) -> f64 {
+        ROUND_OFF * self.body.body.extent()
     }
+
+    /// The nodes that start in a place.
+    fn inside(&self, place: &Place) -> Vec<u32> {
+        let position = (0..).zip(&self.body.initial.position);
+        position.filter(|(_, at)| place.has(**at, self.round_off())).map(|(node, _)| node).collect()
+    }
+}
+
+/// A ball with its centre and radius (m), or a box with its lowest and highest corner (m).
+pub(super) enum Place {
+    Ball(DVec3, f64),
+    Box(DVec3, DVec3),
+}
+
+impl Place {
+    /// A place as typed at a path; `None` after reporting a mistake.
+    pub(super) fn new(
+        region: &RegionFile,
+        dimension: Dimension,
+        path: &[PathPart<'_>],
+        report: &mut Collector<'_>,
+    ) -> Option<Self> {
+        let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
+        match region {
+            RegionFile { of: Some(of), within: Some(within), .. } => Some(Self::Ball(point(of, "of")?, *within)),
+            RegionFile { low: Some(low), high: Some(high), .. } => {
+                let (low, high) = (point(low, "low"), point(high, "high"));
+                let (low, high) = (low?, high?);
+                if low.cmpgt(high).any() {
+                    let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
+                    report.at(&key_path![path; "low"], message, None);
+                    return None;
+                }
+                Some(Self::Box(low, high))
+            }
+            // The schema rules this out.
+            _ => None,
+        }
+    }
+
+    /// Whether a point is in it, or beside it by no more than a distance (m).
+    pub(super) fn has(&self, at: DVec3, close: f64) -> bool {
+        match *self {
+            Self::Ball(middle, radius) => at.distance(middle) <= radius + close,
+            Self::Box(low, high) => at.cmpge(low - close).all() && at.cmple(high + close).all(),
+        }
+    }
+}
+
+/// The elements of a body with a corner on its side of a name at rest, or with all corners in its group of this name; `None` after reporting a mistake.
+pub(super) fn named_cells(
+    name: &str,
+    of: &Layered<'_>,
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Vec<u32>> {
+    let nodes = named(name, std::slice::from_ref(of), path, report)?.pop()?;
+    let is_group = of.body.groups.iter().any(|group| group.name == name);
+    let mut is_chosen = vec![false; of.body.body.len()];
+    nodes.iter().for_each(|&node| is_chosen[node as usize] = true);
+    let takes = |corners: &[u32]| {
+        let mut chosen = corners.iter().map(|&node| is_chosen[node as usize]);
+        if is_group { chosen.all(|is| is) } else { chosen.any(|is| is) }
+    };
+    Some((0..).zip(of.body.body.elements().iter()).filter(|(_, corners)| takes(corners)).map(|(at, _)| at).collect())
 }
 
 /// The selected nodes of each body, in rising order: those of the body of a `name`, or of all; all nodes unless some are typed, under a key.
@@ -154,29 +216,11 @@ fn within(
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
     let dimension = bodies[0].body.body.dimension();
-    let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
-    let nodes: Vec<Vec<u32>> = match region {
-        RegionFile { of: Some(of), within: Some(within), .. } => {
-            let middle = point(of, "of")?;
-            let is_inside = |at: DVec3, close: f64| at.distance(middle) <= *within + close;
-            bodies.iter().map(|body| body.inside(is_inside)).collect()
-        }
-        RegionFile { low: Some(low), high: Some(high), .. } => {
-            let (low, high) = (point(low, "low"), point(high, "high"));
-            let (low, high) = (low?, high?);
-            if low.cmpgt(high).any() {
-                let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
-                report.at(&key_path![path; "low"], message, None);
-                return None;
-            }
-            let is_inside = |at: DVec3, close: f64| at.cmpge(low - close).all() && at.cmple(high + close).all();
-            let nodes: Vec<Vec<u32>> = bodies.iter().map(|body| body.inside(is_inside)).collect();
-            bodies.iter().zip(&nodes).for_each(|(body, nodes)| warn_of_rest(nodes, body, path, report));
-            nodes
-        }
-        // The schema rules this out.
-        _ => return None,
-    };
+    let place = Place::new(region, dimension, path, report)?;
+    let nodes: Vec<Vec<u32>> = bodies.iter().map(|body| body.inside(&place)).collect();
+    if matches!(place, Place::Box(..)) {
+        bodies.iter().zip(&nodes).for_each(|(body, nodes)| warn_of_rest(nodes, body, path, report));
+    }
     if nodes.iter().all(Vec::is_empty) {
         let message = format!("`{}` is a region without nodes at the start", written(path));
         let all: Vec<DVec3> = bodies.iter().flat_map(|one| &one.body.initial.position).copied().collect();

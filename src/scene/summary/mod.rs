@@ -42,6 +42,9 @@ pub struct SceneSummary {
     pub grabs: Vec<String>,
     /// The loads on each body in a few words.
     pub loads: Vec<String>,
+    /// The nodes of each probe in a few words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<String>,
     /// The picture in a few words.
     pub picture: String,
 }
@@ -69,6 +72,9 @@ pub struct BodySummary {
     /// Number of triangles of the fine surface that it carries.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub carried: Option<usize>,
+    /// Each region with a material of its own in a few words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<String>,
 }
 
 /// One run of a [`SceneSummary`].
@@ -120,7 +126,8 @@ pub struct PartSummary {
 }
 
 impl BodySummary {
-    fn new(SceneBody { name, body, initial, separated, .. }: &SceneBody) -> Self {
+    fn new(of: &SceneBody) -> Self {
+        let SceneBody { name, body, initial, separated, .. } = of;
         let (low, high) = bounds(body.rest());
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         Self {
@@ -133,6 +140,7 @@ impl BodySummary {
             separated: (*separated != DVec3::ZERO).then(|| coordinates(*separated, body.dimension())),
             mass: body.mass().iter().sum(),
             carried: body.carried().map(|carried| carried.triangles.len()),
+            regions: of.regions.iter().map(|region| words::region(region, body.dimension())).collect(),
         }
     }
 }
@@ -183,6 +191,7 @@ impl Scene {
             holds: self.constraints(true),
             grabs: self.constraints(false),
             loads: self.loads_in_words(),
+            probes: self.probes_in_words(),
             picture: self.picture(),
         }
     }

@@ -3,7 +3,7 @@
 use super::{PartSummary, RunSummary, SceneSummary, coordinates};
 use crate::reading::captions::typed;
 use crate::reading::words::{count, ends, list, several, short};
-use crate::scene::{Rest, Run, Scene, SceneBody};
+use crate::scene::{Probe, Region, Rest, Run, Scene, SceneBody};
 use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape};
 use glam::DVec3;
 use std::fmt;
@@ -38,6 +38,15 @@ impl Scene {
             });
             words.collect()
         })
+    }
+
+    /// The nodes of each probe.
+    pub(super) fn probes_in_words(&self) -> Vec<String> {
+        let one = |probe: &Probe| {
+            let nodes = probe.nodes.iter().map(Vec::len).sum::<usize>();
+            format!("{}: {}", probe.name, several(nodes as u64, "node"))
+        };
+        self.probes.iter().map(one).collect()
     }
 
     /// What is said of each body of the first simulated run that has it: constraints and loads are the same in all runs.
@@ -193,6 +202,14 @@ fn describe_load(load: &Loading, nodes: &[usize], body: &str, dimension: Dimensi
     }
 }
 
+/// A region of a body in words.
+pub(super) fn region(Region { name, elements, modulus, density }: &Region, dimension: Dimension) -> String {
+    let unit = if dimension == Dimension::Plane { "kg/m²" } else { "kg/m³" };
+    let modulus = modulus.map_or_else(String::new, |modulus| format!(", stiffness × {}", short(modulus)));
+    let density = density.map_or_else(String::new, |density| format!(", {} {unit}", short(density)));
+    format!("{name}: {}{modulus}{density}", several(elements.len() as u64, "element"))
+}
+
 /// A name before the words about it; nothing without a name.
 fn titled(name: &str) -> String {
     if name.is_empty() { String::new() } else { format!("{name}: ") }
@@ -227,6 +244,7 @@ impl fmt::Display for SceneSummary {
             if let Some(way) = &body.separated {
                 line("", &format!("moved by {} m, apart from what it overlapped", vector(way)))?;
             }
+            body.regions.iter().try_for_each(|region| line("region", region))?;
         }
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
@@ -269,7 +287,9 @@ impl fmt::Display for SceneSummary {
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;
         }
-        for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs), ("load", &self.loads)] {
+        for (name, constraints) in
+            [("hold", &self.holds), ("grab", &self.grabs), ("load", &self.loads), ("probe", &self.probes)]
+        {
             constraints.iter().try_for_each(|constraint| line(name, constraint))?;
         }
         line("picture", &self.picture)?;

@@ -143,6 +143,7 @@ impl Plan {
             titles: titles.each_ref().map(Vec::len),
             is_figure: true,
             charts: charts.as_ref().map_or([0; 2], |charts| [charts.count(), charts.names()]),
+            own_axes: charts.as_ref().map_or(0, |charts| charts.count() - charts.over_time()),
             legend: legend.map(|legend| legend.height),
             ..Wanted::default()
         };
@@ -179,7 +180,7 @@ impl Plan {
             let [left, _, tile, _] = layout.tile(0, 0).map(f64::from);
             let right = left + tile * sheet.columns.len() as f64 - charts.ends_width();
             let names = layout.page.get(Part::Words).map(|[left, ..]| left);
-            if let Some(room) = Room::new(&layout.page, scale, [left, right], names, true) {
+            if let Some(room) = Room::new(&layout.page, scale, ([left, right], charts.over_time()), names, true) {
                 charts::draw(charts, sheet, moments.histories[0].end, writer, &room);
             }
         }
