@@ -14,6 +14,14 @@ __all__ = ["Picture", "Result", "RunResult", "Scene", "World", "__version__", "_
 __version__: str
 
 def _program(words: list[str]) -> int: ...
+def _compare(
+    result: Result,
+    golden: os.PathLike[str],
+    told: tuple[str, str],
+    accepts: bool,
+    page: os.PathLike[str] | None,
+) -> tuple[str, bool, str, list[str]]: ...
+def _index(page: os.PathLike[str], all: list[tuple[str, str, str, bool, str]]) -> None: ...
 
 @final
 class Scene:

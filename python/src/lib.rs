@@ -7,7 +7,10 @@
 
 mod convert;
 mod error;
+#[cfg(feature = "render")]
+mod golden;
 mod interrupt;
+mod made;
 #[cfg(feature = "render")]
 mod picture;
 mod result;
@@ -20,6 +23,9 @@ mod _core {
     use pyo3::prelude::*;
     use std::ffi::OsString;
 
+    #[cfg(feature = "render")]
+    #[pymodule_export]
+    use super::golden::{_compare, _index};
     #[cfg(feature = "render")]
     #[pymodule_export]
     use super::picture::Picture;

@@ -1,6 +1,7 @@
 //! The results of a simulation: arrays of all frames, and their pictures.
 
 use crate::interrupt::{Slices, in_pool};
+use crate::made::Made;
 #[cfg(feature = "render")]
 use crate::picture::Picture;
 use localshape::Runner;
@@ -14,7 +15,6 @@ use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::Arc;
 
 /// The number of the run with a name.
 pub(crate) fn run_of(scene: &localshape::Scene, name: &str) -> PyResult<usize> {
@@ -27,12 +27,13 @@ pub(crate) fn run_of(scene: &localshape::Scene, name: &str) -> PyResult<usize> {
 /// The frames of a simulated scene: `result["NAME"]` has the arrays of a run, and `result.frame(t)` is a picture.
 #[pyclass(frozen, module = "localshape")]
 pub(crate) struct Result {
-    scene: Arc<localshape::Scene>,
+    /// The scene, and what it was made of.
+    pub(crate) made: Made,
     /// The frames without positions and velocities, which are in the arrays of the runs.
     frames: Vec<Frame>,
     /// What pictures show of the course.
     #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "pictures alone show it"))]
-    history: History,
+    pub(crate) history: History,
     runs: Vec<Py<RunResult>>,
 }
 
@@ -59,14 +60,15 @@ pub(crate) struct RunResult {
 type Nodes = [Vec<f64>; 2];
 
 /// Simulates some runs of a scene to its end.
-pub(crate) fn simulate(py: Python<'_>, scene: Arc<localshape::Scene>, runs: &[usize]) -> PyResult<Result> {
+pub(crate) fn simulate(py: Python<'_>, made: Made, runs: &[usize]) -> PyResult<Result> {
     if runs.is_empty() {
         return Err(PyValueError::new_err("there are no runs to simulate; expected the name of at least one"));
     }
-    let (frames, nodes, history) = py.detach(|| in_pool(|go_on| course(&scene, runs, go_on)))?;
-    let of_run = |(place, nodes)| Py::new(py, RunResult::new(py, &scene, &frames, place, nodes)?);
+    let scene = &*made.scene;
+    let (frames, nodes, history) = py.detach(|| in_pool(|go_on| course(scene, runs, go_on)))?;
+    let of_run = |(place, nodes)| Py::new(py, RunResult::new(py, scene, &frames, place, nodes)?);
     let runs = nodes.into_iter().enumerate().map(of_run).collect::<PyResult<_>>()?;
-    Ok(Result { scene, frames, history, runs })
+    Ok(Result { made, frames, history, runs })
 }
 
 /// The frames of some runs, the nodes of each run, and what pictures show of the course. An error of `go_on` ends it.
@@ -178,7 +180,7 @@ impl Result {
         match self.runs.iter().find(|run| run.get().name == name) {
             Some(run) => Ok(run.clone_ref(py)),
             None => {
-                run_of(&self.scene, name)?;
+                run_of(&self.made.scene, name)?;
                 let message = format!("the run “{name}” was not simulated; the result has {}", self.runs().join(", "));
                 Err(PyKeyError::new_err(message))
             }
@@ -198,21 +200,21 @@ impl Result {
     /// Raises `ValueError` for a time before the start or after the last frame.
     #[cfg(feature = "render")]
     fn frame(&self, py: Python<'_>, t: f64) -> PyResult<Picture> {
-        let (last, duration) = (self.frames.len() - 1, self.scene.duration);
-        let number = (t * self.scene.frames_per_second).round();
+        let (last, duration) = (self.frames.len() - 1, self.made.scene.duration);
+        let number = (t * self.made.scene.frames_per_second).round();
         if !(t >= 0.0 && (number <= last as f64 || t <= duration)) {
-            let end = self.scene.frame_time(last as u64);
+            let end = self.made.scene.frame_time(last as u64);
             return Err(PyValueError::new_err(format!("there is no frame at {t} s; frames are from 0 to {end} s")));
         }
         let frame = self.whole(py, (number as usize).min(last))?;
         self.check_compared()?;
-        py.detach(|| Picture::compose(&self.scene, &self.history, frame)).map_err(PyValueError::new_err)
+        py.detach(|| Picture::compose(&self.made.scene, &self.history, frame)).map_err(PyValueError::new_err)
     }
 
     fn __repr__(&self) -> String {
         format!(
             "<localshape.Result “{}”: {} frames of {}>",
-            self.scene.title,
+            self.made.scene.title,
             self.frames.len(),
             self.runs().join(", ")
         )
@@ -222,7 +224,7 @@ impl Result {
 #[cfg(feature = "render")]
 impl Result {
     /// A frame with its positions and velocities.
-    fn whole(&self, py: Python<'_>, index: usize) -> PyResult<Frame> {
+    pub(crate) fn whole(&self, py: Python<'_>, index: usize) -> PyResult<Frame> {
         let mut frame = self.frames[index].clone();
         for (run, arrays) in frame.runs.iter_mut().zip(&self.runs) {
             let vectors = |array: &Py<PyArray3<f64>>| -> PyResult<Vec<DVec3>> {
@@ -238,11 +240,11 @@ impl Result {
     }
 
     /// Refuses pictures that compare runs with one that was not simulated.
-    fn check_compared(&self) -> PyResult<()> {
+    pub(crate) fn check_compared(&self) -> PyResult<()> {
         let is_missing = |run: usize| !self.frames[0].runs.iter().any(|simulated| simulated.run == run);
-        match self.scene.view.compared().into_iter().flatten().find(|(_, run)| is_missing(*run)) {
+        match self.made.scene.view.compared().into_iter().flatten().find(|(_, run)| is_missing(*run)) {
             Some((key, run)) => {
-                let name = &self.scene.runs[run].name;
+                let name = &self.made.scene.runs[run].name;
                 let message =
                     format!("the run “{name}”, which `view.{key}` needs, was not simulated; simulate it, too");
                 Err(PyValueError::new_err(message))

@@ -1,9 +1,10 @@
 //! Scenes: files or keys, and their settings.
 
+use crate::made::{Made, Origin};
 use crate::result::{self, Result, run_of};
 use crate::world::World;
 use crate::{convert, error};
-use localshape::scene::{Limits, SceneKeys, Setting};
+use localshape::scene::{SceneKeys, Setting};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
@@ -15,40 +16,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// (N × 2 or N × 3, m) and `elements` (rows of nodes, with -1 at the end of shorter ones). `Scene.load(path)` reads a scene file.
 #[pyclass(frozen, module = "localshape")]
 pub(crate) struct Scene {
-    state: Mutex<State>,
-}
-
-struct State {
-    origin: Arc<Origin>,
-    settings: Vec<Setting>,
-    scene: Arc<localshape::Scene>,
-}
-
-/// Where a scene comes from.
-enum Origin {
-    File(PathBuf),
-    Keys(Box<SceneKeys>),
-}
-
-impl Origin {
-    /// The scene with some settings. The interpreter goes on meanwhile.
-    fn read(&self, py: Python<'_>, settings: &[Setting]) -> PyResult<Arc<localshape::Scene>> {
-        let limits = Limits::default();
-        let read = py.detach(|| match self {
-            Self::File(path) => localshape::Scene::load_with(path, settings, &limits),
-            Self::Keys(keys) => localshape::Scene::from_keys(keys, settings, &limits),
-        });
-        read.map(Arc::new).map_err(|error| error::of_scene(py, &error))
-    }
-
-    fn into_scene(self, py: Python<'_>) -> PyResult<Scene> {
-        let scene = self.read(py, &[])?;
-        Ok(Scene { state: Mutex::new(State { origin: Arc::new(self), settings: Vec::new(), scene }) })
-    }
+    state: Mutex<Made>,
 }
 
 impl Scene {
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn made(py: Python<'_>, origin: Origin) -> PyResult<Self> {
+        let scene = origin.read(py, &[])?;
+        Ok(Self { state: Mutex::new(Made { origin: Arc::new(origin), settings: Vec::new(), scene }) })
+    }
+
+    fn state(&self) -> MutexGuard<'_, Made> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -66,7 +43,7 @@ impl Scene {
         let (keys, lists) = keys.map(convert::keys).transpose()?.unwrap_or_default();
         let title = keys.get("title").and_then(|title| title.as_str()).filter(|title| !title.is_empty());
         let name = title.unwrap_or("scene").to_owned();
-        Origin::Keys(Box::new(SceneKeys::new(name, keys, lists))).into_scene(py)
+        Self::made(py, Origin::Keys(Box::new(SceneKeys::new(name, keys, lists))))
     }
 
     /// Reads a scene file.
@@ -74,7 +51,7 @@ impl Scene {
     /// Raises `SceneError` for mistakes in it, and `OSError` if it cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Origin::File(path).into_scene(py)
+        Self::made(py, Origin::File(path))
     }
 
     /// Sets the value of a key, such as `run[0].model.stiffness` or `run["Springs"].step`, and checks the scene with it. After a
@@ -140,14 +117,15 @@ impl Scene {
     /// Other threads of Python go on meanwhile, and Ctrl-C is heard. A run that diverges is a result: see `RunResult.divergence`.
     #[pyo3(signature = (runs=None))]
     fn simulate(&self, py: Python<'_>, runs: Option<Vec<String>>) -> PyResult<Result> {
-        let scene = self.now();
+        let state = self.state().clone();
+        let scene = &state.scene;
         let mut chosen = match runs {
-            Some(names) => names.iter().map(|name| run_of(&scene, name)).collect::<PyResult<Vec<_>>>()?,
+            Some(names) => names.iter().map(|name| run_of(scene, name)).collect::<PyResult<Vec<_>>>()?,
             None => (0..scene.runs.len()).collect(),
         };
         chosen.sort_unstable();
         chosen.dedup();
-        result::simulate(py, scene, &chosen)
+        result::simulate(py, state, &chosen)
     }
 
     /// The bodies of a run at their start, to be advanced step by step. The name may be left out if there is one run.

@@ -20,6 +20,6 @@ def test_examples():
     names = {}
     for example in EXAMPLES:
         exec(example, names)
-    assert len(EXAMPLES) == 3
+    assert len(EXAMPLES) == 4
     assert pathlib.Path("frame.pdf").read_bytes().startswith(b"%PDF")
     assert names["position"].ndim == 3 and names["world"].time >= 1.0

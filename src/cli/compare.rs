@@ -8,7 +8,9 @@ use super::{failure::warn, figure::warn_of_figure, interrupt};
 #[cfg(feature = "render")]
 use crate::golden::{
     AcceptError, Golden,
-    draw::{DrawError, PICTURES, Subject, draw, usual_gpu},
+    device::usual_gpu,
+    draw::{DrawError, Subject, draw},
+    drawing::PICTURES,
 };
 use crate::golden::{Comparison, ComparisonError};
 #[cfg(feature = "render")]
@@ -105,16 +107,11 @@ impl Compare {
         if self.printing.json {
             console::print_json(&document(comparison, accepted))?;
         } else if !self.printing.quiet {
-            let mut text = comparison.to_string();
-            match (accepted, comparison.command_to_accept()) {
-                (Some([]), _) => text += "nothing to accept\n",
-                (Some(lines), _) => lines.iter().for_each(|line| text += &format!("{line}\n")),
-                (None, Some(command)) => {
-                    let what = if comparison.golden_is_missing { "make it with" } else { "accept with" };
-                    text += &format!("{what}: {command}\n");
-                }
-                (None, None) => {}
-            }
+            let text = match accepted {
+                None => comparison.advised(),
+                Some([]) => format!("{comparison}nothing to accept\n"),
+                Some(lines) => format!("{comparison}{}\n", lines.join("\n")),
+            };
             console::print(&text)?;
         }
         Ok(reported?)

@@ -14,8 +14,7 @@ impl Comparison {
     /// Compares the states and pictures of a scene or figure with its golden.
     pub(crate) fn of_golden(golden: &Golden, drawn: &Drawn) -> Self {
         let pictures = drawn.pictures.clone().map(|actual| paired(golden.pictures.clone(), actual));
-        let sides = [golden.folder.clone(), drawn.origin.clone()];
-        let mut comparison = Self::of_pairs(pictures.unwrap_or_default(), sides);
+        let mut comparison = Self::of_pairs(pictures.unwrap_or_default(), &drawn.origin);
         let typed = [&golden.folder, &drawn.origin].map(|path| typed(path));
         comparison.command = Some(format!("localshape compare --bless {}", typed.join(" ")));
         comparison.notes = drawn.notes.clone();

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Number of pictures that are listed one by one.
 const MOST_LISTED: usize = 12;
@@ -36,8 +36,9 @@ pub(crate) struct Comparison {
     pub(crate) states: Option<usize>,
     #[serde(skip)]
     pub(super) sources: Vec<[Option<Source>; 2]>,
+    /// The title of its page.
     #[serde(skip)]
-    pub(super) sides: [PathBuf; 2],
+    pub(super) title: String,
     /// The command that makes or renews the golden.
     #[serde(skip)]
     pub(super) command: Option<String>,
@@ -72,11 +73,11 @@ impl Comparison {
                 return Err(ComparisonError::Unlike { folder, file });
             }
         };
-        let [expected, actual] = sides.map(Path::to_owned);
         if pairs.is_empty() {
+            let [expected, actual] = sides.map(Path::to_owned);
             return Err(ComparisonError::Empty { expected, actual });
         }
-        let mut comparison = Self::of_pairs(pairs, [expected, actual]);
+        let mut comparison = Self::of_pairs(pairs, actual);
         let tags = [0, 1].map(|side| -> Vec<&Tags> {
             comparison.pictures.iter().filter_map(|picture| picture.tags[side].as_ref()).collect()
         });
@@ -89,7 +90,8 @@ impl Comparison {
         Ok(comparison)
     }
 
-    pub(super) fn of_pairs(pairs: Vec<(String, [Option<Source>; 2])>, sides: [PathBuf; 2]) -> Self {
+    /// Compares pairs of pictures. The name of the actual side is the title.
+    pub(super) fn of_pairs(pairs: Vec<(String, [Option<Source>; 2])>, actual: &Path) -> Self {
         let read = |(name, sources): &(String, [Option<Source>; 2])| Compared::read(name.clone(), sources);
         let pictures = match &pairs[..] {
             // Starting threads takes a tenth of the time of a pair.
@@ -97,9 +99,10 @@ impl Comparison {
             pairs => pairs.par_iter().map(read).collect(),
         };
         let sources = pairs.into_iter().map(|(_, sources)| sources).collect();
+        let title = actual.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let (moved, keys, notes) = Default::default();
         let (ends_early, golden_is_missing, states, command) = (None, false, None, None);
-        Self { pictures, moved, keys, ends_early, golden_is_missing, notes, states, sources, sides, command }
+        Self { pictures, moved, keys, ends_early, golden_is_missing, notes, states, sources, title, command }
     }
 
     /// Whether everything is as expected.
@@ -119,6 +122,13 @@ impl Comparison {
     /// The command that makes or renews the golden, if it differs from its scene.
     pub(crate) fn command_to_accept(&self) -> Option<&str> {
         self.command.as_deref().filter(|_| !self.passes())
+    }
+
+    /// The findings and verdicts, line by line, and the command that makes or renews the golden.
+    pub(crate) fn advised(&self) -> String {
+        let what = if self.golden_is_missing { "make it with" } else { "accept with" };
+        let advice = self.command_to_accept().map(|command| format!("{what}: {command}\n"));
+        self.to_string() + &advice.unwrap_or_default()
     }
 
     fn failures(&self) -> usize {

@@ -9,7 +9,11 @@
 mod accept;
 mod comparison;
 #[cfg(feature = "render")]
+pub(crate) mod device;
+#[cfg(feature = "render")]
 pub(crate) mod draw;
+#[cfg(feature = "render")]
+pub(crate) mod drawing;
 mod error;
 #[cfg(feature = "render")]
 mod folder;
@@ -19,6 +23,8 @@ mod picture;
 mod record;
 #[cfg(feature = "render")]
 mod said;
+#[cfg(feature = "render")]
+mod simulated;
 mod source;
 mod states;
 #[cfg(feature = "render")]
@@ -39,3 +45,9 @@ pub use picture::Pixels;
 pub(crate) use record::is_record;
 #[cfg(feature = "render")]
 pub use suite::Suite;
+#[cfg(feature = "render")]
+#[doc(hidden)]
+pub use {
+    device::TestDevice,
+    simulated::{Outcome, Simulated, Told},
+};

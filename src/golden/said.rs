@@ -2,18 +2,23 @@
 
 use super::keys::Key;
 use crate::reading::words::hexadecimal;
-use crate::scene::Scene;
 use crate::scene::figure::Figure;
+use crate::scene::{Scene, SceneKeys, Setting, keys_in_memory, keys_of};
 use sha2::{Digest, Sha256};
 use std::path::Path;
-use toml::Value;
+use toml::{Table, Value};
 
 /// A value with more characters is replaced by its digest.
 const LONGEST: usize = 100;
 
-/// The keys of a scene, with the step of each run in seconds: it may follow from the stiffness of another run.
-pub(super) fn of_scene(scene: &Scene) -> Vec<Key> {
-    let mut keys = scene.file.as_ref().map_or_else(Vec::new, |file| of_file(file));
+/// The keys of a scene with settings, whose keys may be in memory, and the step of each run in seconds: it may follow from the stiffness
+/// of another run.
+pub(super) fn of_scene(scene: &Scene, in_memory: Option<&SceneKeys>, settings: &[Setting]) -> Vec<Key> {
+    let mut keys = match (in_memory, &scene.file) {
+        (Some(keys), _) => listed(keys_in_memory(keys, settings), Path::new("")),
+        (None, Some(file)) => of_file(file, settings),
+        (None, None) => Vec::new(),
+    };
     for (at, run) in scene.runs.iter().enumerate() {
         let path = format!("run[{at}].step");
         keys.retain(|key| key.path != path);
@@ -26,19 +31,21 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Key> {
 pub(super) fn of_figure(path: &Path, figure: &Figure) -> Vec<Key> {
     let of_scene = |scene: &Scene| {
         let name = scene.name.clone();
-        of_scene(scene).into_iter().map(move |key| Key { path: format!("{name}: {}", key.path), ..key })
+        of_scene(scene, None, &[]).into_iter().map(move |key| Key { path: format!("{name}: {}", key.path), ..key })
     };
-    of_file(path).into_iter().chain(figure.scenes().iter().flat_map(of_scene)).collect()
+    of_file(path, &[]).into_iter().chain(figure.scenes().iter().flat_map(of_scene)).collect()
 }
 
-/// The keys of a file that was read before.
-fn of_file(path: &Path) -> Vec<Key> {
-    let mut keys = Vec::new();
+/// The keys of a file that was read before, with settings.
+fn of_file(path: &Path, settings: &[Setting]) -> Vec<Key> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
-    if let Ok(table) = text.parse::<toml::Table>() {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        table.into_iter().for_each(|(name, value)| add(&mut keys, folder, name, value));
-    }
+    listed(keys_of(&text, settings), path.parent().unwrap_or(Path::new("")))
+}
+
+/// The keys in a table, which name files in a folder.
+fn listed(table: Table, folder: &Path) -> Vec<Key> {
+    let mut keys = Vec::new();
+    table.into_iter().for_each(|(name, value)| add(&mut keys, folder, name, value));
     keys
 }
 
@@ -87,7 +94,7 @@ fn digest(bytes: &[u8]) -> String {
 mod tests {
     use super::super::keys::changed;
     use super::*;
-    use crate::scene::Limits;
+    use crate::scene::{BodyLists, Limits};
 
     fn scene(folder: &Path, text: &str) -> Scene {
         let path = folder.join("scene.toml");
@@ -109,9 +116,9 @@ mod tests {
             name = 'other'
             model = { kind = 'mass-spring', stiffness = 2e4 }
         ";
-        let before = of_scene(&scene(folder.path(), text));
+        let before = of_scene(&scene(folder.path(), text), None, &[]);
         let told = |after: &str| -> Vec<String> {
-            changed(&before, &of_scene(&scene(folder.path(), after))).iter().map(ToString::to_string).collect()
+            changed(&before, &of_scene(&scene(folder.path(), after), None, &[])).iter().map(ToString::to_string).collect()
         };
         // Changed comments and notations of numbers are not reported.
         assert_eq!(told(&text.replace("1e4 }", "10000.0 } # ten thousand")), [""; 0]);
@@ -129,12 +136,44 @@ mod tests {
     }
 
     #[test]
+    fn settings_and_lists_in_memory_are_keys() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let text = "
+            time = { duration = 0.1 }
+            body.nodes = [[0, 0], [1, 0], [0, 1]]
+            body.elements = [[0, 1, 2]]
+            [[run]]
+            name = 'one'
+            model = { kind = 'shape-based', stiffness = 1e4 }
+        ";
+        let settings = ["run[\"one\"].model.stiffness=2e4", "time.frames_per_second=30"];
+        let settings = settings.map(|setting| setting.parse::<Setting>().expect("a setting"));
+        let scene = scene(folder.path(), text);
+        let before = of_scene(&scene, None, &[]);
+        let told = |after: &[Key]| changed(&before, after).iter().map(ToString::to_string).collect::<Vec<_>>();
+        let set = ["run[0].model.stiffness: 10000 → 20000", "time.frames_per_second: not given → 30"];
+        assert_eq!(told(&of_scene(&scene, None, &settings)), set);
+
+        let mut keys: Table = text.parse().expect("TOML");
+        let body = keys["body"].as_table_mut().expect("a table");
+        body.remove("nodes");
+        let nodes = |last: f64| vec![[0.0, 0.0].into(), [1.0, 0.0].into(), [0.0, last].into()];
+        let in_memory = |last: f64| {
+            let lists = BodyLists { nodes: Some(nodes(last)), ..BodyLists::default() };
+            SceneKeys::new("scene", keys.clone(), vec![lists])
+        };
+        assert_eq!(told(&of_scene(&scene, Some(&in_memory(1.0)), &settings)), set);
+        let moved = told(&of_scene(&scene, Some(&in_memory(2.0)), &[]));
+        assert_eq!(moved, ["body.nodes: [[0, 0], [1, 0], [0, 1]] → [[0, 0], [1, 0], [0, 2]]"]);
+    }
+
+    #[test]
     fn long_lists_and_files_are_named_by_their_digests() {
         let folder = tempfile::tempdir().expect("a folder");
         let keys = |text: &str| {
             let path = folder.path().join("any.toml");
             std::fs::write(&path, text).expect("a file");
-            of_file(&path)
+            of_file(&path, &[])
         };
         let list =
             |last: u32| format!("body.nodes = {:?}", (0..60).chain([last]).map(|at| [at, 1]).collect::<Vec<_>>());

@@ -1,9 +1,11 @@
 //! Goldens in `cargo test`.
 
 use super::comparison::Comparison;
-use super::draw::{PICTURES, Subject, draw, usual_gpu};
+use super::device::TestDevice;
+use super::draw::{Subject, draw};
+use super::drawing::PICTURES;
 use super::folder::Golden;
-use crate::gpu::{AdapterChoice, Gpu};
+use crate::gpu::AdapterChoice;
 use crate::scene::Limits;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -42,11 +44,9 @@ pub struct Suite {
     reports: PathBuf,
     /// The number of pictures of new goldens.
     pictures: u64,
-    /// A requested adapter instead of the usual one.
-    adapter: Option<AdapterChoice>,
+    device: TestDevice,
     /// Whether pictures without lit bodies must be equal.
     is_exact: bool,
-    gpu: Option<Option<Gpu>>,
     used: BTreeSet<String>,
     complaints: Vec<String>,
     is_finished: bool,
@@ -60,9 +60,8 @@ impl Suite {
             goldens: goldens.into(),
             reports: target.join("golden"),
             pictures: PICTURES,
-            adapter: None,
+            device: TestDevice::default(),
             is_exact: false,
-            gpu: None,
             used: BTreeSet::new(),
             complaints: Vec::new(),
             is_finished: false,
@@ -78,7 +77,7 @@ impl Suite {
     /// Draws on a given adapter instead of the kind that drew the goldens. Then nothing is accepted: goldens come from
     /// one kind of adapter.
     pub fn on(mut self, adapter: AdapterChoice) -> Self {
-        self.adapter = Some(adapter);
+        self.device.adapter = Some(adapter);
         self
     }
 
@@ -113,12 +112,12 @@ impl Suite {
         if !["", "0", "1"].contains(&update.as_str()) {
             return Err(format!("{UPDATE}={update} means nothing; {UPDATE}=1 makes and renews goldens"));
         }
-        let updates = update == "1" && self.adapter.is_none();
+        let updates = update == "1" && self.device.adapter.is_none();
         let folder = self.goldens.join(name);
         let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
         let golden = if updates { Golden::read(&folder) } else { Golden::read_whole(&folder) };
         let golden = golden.map_err(|error| error.to_string())?;
-        let gpu = if subject.is_lit() { self.device(&golden)?.cloned() } else { None };
+        let gpu = if subject.is_lit() { self.device.of(&golden)?.cloned() } else { None };
         let drawn = draw(path, &subject, &golden, self.pictures, gpu.as_ref(), &mut || true);
         let drawn = drawn.map_err(|error| error.to_string())?.expect("it is not interrupted");
         let mut comparison = Comparison::of_golden(&golden, &drawn);
@@ -145,27 +144,6 @@ impl Suite {
             Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),
         };
         Err(format!("{comparison}{seen}\naccept with: {UPDATE}=1 cargo test"))
-    }
-
-    /// The device to draw with, opened once; `None` without any adapter.
-    fn device(&mut self, golden: &Golden) -> Result<Option<&Gpu>, String> {
-        if self.gpu.is_none() {
-            let opened = match &self.adapter {
-                None => usual_gpu(golden).or_else(|_| Gpu::new(&AdapterChoice::Auto)),
-                Some(asked) => Gpu::new(asked),
-            };
-            self.gpu = Some(match opened {
-                Ok(gpu) => Some(gpu),
-                Err(error) if std::env::var("LOCALSHAPE_REQUIRE_GPU").as_deref() == Ok("1") => {
-                    return Err(error.to_string());
-                }
-                Err(error) => {
-                    eprintln!("states are compared, but no pictures: {error}");
-                    None
-                }
-            });
-        }
-        Ok(self.gpu.as_ref().and_then(Option::as_ref))
     }
 
     /// Ends the comparison.

@@ -5,7 +5,9 @@ pub use crate::cli::{Failure, Status, ThreadOptions, listen, print, requested, r
 pub use crate::cli::{doubts, settle, unprintable, width_to_set};
 pub use crate::colour::{ciede2000, lab, linear};
 pub use crate::golden::Pixels;
-pub use crate::golden::page::{Page, PicturePair};
+pub use crate::golden::page::{Listed, Page, PicturePair, index};
+#[cfg(feature = "render")]
+pub use crate::golden::{Outcome, Simulated, TestDevice, Told};
 pub use crate::output::{
     Clock, Compression, Shown, Spent, Tags, Timings, encode, encode_print, exact, is_folder, read_file, read_tags,
     rows_as_csv, shell::line as command_line, thread_time, write_whole,

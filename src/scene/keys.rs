@@ -39,45 +39,57 @@ impl SceneKeys {
     /// The keys of a scene with a name, and the lists of its first bodies, which the keys do not have. Bodies without lists at the end may be left
     /// out.
     pub fn new(name: impl Into<String>, mut keys: Table, lists: Vec<BodyLists>) -> Self {
-        for (at, lists) in lists.iter().enumerate() {
-            let body = match keys.get_mut("body") {
-                Some(Value::Array(several)) => several.get_mut(at),
-                one => one.filter(|_| at == 0),
-            };
-            let table = body.and_then(Value::as_table_mut);
-            table.into_iter().for_each(|table| table.extend(lists.begun().map(|(key, list)| (key.to_owned(), list))));
-        }
+        extend(&mut keys, &lists, 1);
         let text = toml::to_string(&keys).expect("numbers, texts, and lists and tables of them");
         Self { name: name.into(), text, lists }
     }
 
+    /// Puts the lists in place of their first entries.
+    #[cfg(feature = "render")]
+    pub(super) fn put_lists(&self, keys: &mut Table) {
+        extend(keys, &self.lists, usize::MAX);
+    }
+
     /// The first setting of a list in memory, or of a table that contains one, whose text would be ignored.
     pub(super) fn of_lists<'s>(&self, settings: &'s [Setting]) -> Option<&'s Setting> {
-        let is_list = |key: &str| self.lists.iter().any(|lists| lists.begun().any(|(list, _)| list == key));
+        let is_list = |key: &str| self.lists.iter().any(|lists| lists.begun(1).any(|(list, _)| list == key));
         settings.iter().find(|setting| match setting.keys()[..] {
-            ["body"] => self.lists.iter().any(|lists| lists.begun().next().is_some()),
+            ["body"] => self.lists.iter().any(|lists| lists.begun(1).next().is_some()),
             ["body", key, ..] => is_list(key),
             _ => false,
         })
     }
 }
 
+/// Gives bodies among the keys of a scene their lists, of which up to so many entries each: the check of a scene file looks at one, and
+/// that there are lists at all.
+fn extend(keys: &mut Table, lists: &[BodyLists], most: usize) {
+    for (at, lists) in lists.iter().enumerate() {
+        let body = match keys.get_mut("body") {
+            Some(Value::Array(several)) => several.get_mut(at),
+            one => one.filter(|_| at == 0),
+        };
+        let table = body.and_then(Value::as_table_mut);
+        table.into_iter().for_each(|table| table.extend(lists.begun(most).map(|(key, list)| (key.to_owned(), list))));
+    }
+}
+
 impl BodyLists {
-    /// The keys of the lists that are given, and the first entry of each: the check of a scene file looks at these, and that of lists at all.
-    fn begun(&self) -> impl Iterator<Item = (&'static str, Value)> {
-        fn begun<T>(list: &Option<Vec<T>>, entry: impl Fn(&T) -> Value) -> Option<Value> {
-            list.as_ref().map(|list| Value::Array(list.first().map(entry).into_iter().collect()))
+    /// The keys of the lists that are given, and up to so many entries of each.
+    fn begun(&self, most: usize) -> impl Iterator<Item = (&'static str, Value)> {
+        fn begun<T>(list: &Option<Vec<T>>, most: usize, entry: impl Fn(&T) -> Value) -> Option<Value> {
+            list.as_ref().map(|list| Value::Array(list.iter().take(most).map(entry).collect()))
         }
         let point = |Coordinates(at): &Coordinates| Value::from(at.clone());
         let row = |nodes: &Vec<u32>| Value::from(nodes.clone());
         let lists = [
-            ("nodes", begun(&self.nodes, point)),
-            ("elements", begun(&self.elements, row)),
-            ("springs", begun(&self.springs, |pair| Value::from(pair.to_vec()))),
-            ("faces", begun(&self.faces, row)),
-            ("positions", begun(&self.positions, point)),
-            ("velocities", begun(&self.velocities, point)),
-            ("masses", begun(&self.masses, |&mass| Value::from(mass))),
+            ("nodes", begun(&self.nodes, most, point)),
+            ("elements", begun(&self.elements, most, row)),
+            ("springs", begun(&self.springs, most, |pair| Value::from(pair.to_vec()))),
+            ("faces", begun(&self.faces, most, row)),
+            ("positions", begun(&self.positions, most, point)),
+            ("velocities", begun(&self.velocities, most, point)),
+            ("masses", begun(&self.masses, most, |&mass| Value::from(mass))),
         ];
         lists.into_iter().filter_map(|(key, list)| Some((key, list?)))
     }

@@ -13,6 +13,8 @@ use crate::reading::beside::{in_folders, similar};
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::setting::{Setting, Wrong};
 use crate::reading::source::Source;
+#[cfg(feature = "render")]
+use serde::Deserialize;
 use serde_json::Value;
 use std::borrow::Cow;
 use std::fs::{self, File};
@@ -20,6 +22,8 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+#[cfg(feature = "render")]
+use toml::{Table, de::Deserializer};
 
 impl Scene {
     /// Reads a scene from a file.
@@ -201,6 +205,25 @@ pub(super) fn checked<T>(
         Some(meaning) if report.total() == 0 => Ok(meaning),
         _ => Err(SceneError::Mistakes(report.finish(name))),
     }
+}
+
+/// The keys of a scene in memory with settings, and its whole lists.
+#[cfg(feature = "render")]
+pub(crate) fn keys_in_memory(keys: &SceneKeys, settings: &[Setting]) -> Table {
+    let mut table = keys_of(&keys.text, settings);
+    keys.put_lists(&mut table);
+    table
+}
+
+/// The keys of a scene or figure file with settings; empty for a text with mistakes.
+#[cfg(feature = "render")]
+pub(crate) fn keys_of(text: &str, settings: &[Setting]) -> Table {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let (root, _) = DeTable::parse_recoverable(text);
+    let mut whole = text.to_owned();
+    settings.iter().for_each(|setting| whole.extend(["\n", OPTION, setting.text()]));
+    let (root, _) = set(root, settings, &whole, text.len());
+    Table::deserialize(Deserializer::from(root)).unwrap_or_default()
 }
 
 /// The option before a setting.

@@ -51,7 +51,7 @@ pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, S
 pub use keys::{BodyLists, SceneKeys};
 pub use limits::Limits;
 #[cfg(feature = "render")]
-pub(crate) use load::is_figure_file;
+pub(crate) use load::{is_figure_file, keys_in_memory, keys_of};
 pub use measure::{Probe, Reading};
 pub use recording::Recorded;
 pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};

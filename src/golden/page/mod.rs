@@ -1,6 +1,11 @@
 //! A comparison as one HTML file, which works offline: every picture beside the expected one, the worst first. The file
 //! `page.html` has its text, style and script. The findings are plain HTML, which can be read without scripts.
 
+mod index;
+mod template;
+
+pub use index::{Listed, index};
+
 use super::comparison::Comparison;
 use super::picture::Pixels;
 use super::source::Source;
@@ -11,8 +16,8 @@ use crate::reading::words::escaped;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 use std::cmp::Reverse;
+use template::{filled, hash};
 
 const TEMPLATE: &str = include_str!("page.html");
 /// The most pictures on a page; further ones are only listed.
@@ -68,9 +73,8 @@ impl Comparison {
         if !self.pictures.is_empty() {
             findings.push(self.summary());
         }
-        let title = self.sides[1].file_stem().unwrap_or_default();
         Page {
-            title: title.to_string_lossy().into_owned(),
+            title: self.title.clone(),
             passes: self.passes(),
             verdict: self.verdict().words().to_owned(),
             findings,
@@ -166,35 +170,5 @@ impl PicturePair {
         let figures: String = self.files.iter().zip(["Expected", "Difference", "Actual"]).map(figure).collect();
         let words = escaped(&self.words);
         format!("<section>\n<h2>{sign} {name}</h2>\n<p>{words}</p>\n<div class=\"row\">\n{figures}</div>\n</section>\n")
-    }
-}
-
-/// A template with its `{{names}}` replaced. Inserted text is not searched for names.
-fn filled(template: &str, parts: &[(&str, &str)]) -> String {
-    let mut page = String::with_capacity(template.len() + parts.iter().map(|(_, part)| part.len()).sum::<usize>());
-    let mut left = template;
-    while let Some((before, (name, after))) =
-        left.split_once("{{").and_then(|(before, rest)| Some((before, rest.split_once("}}")?)))
-    {
-        page.push_str(before);
-        let part = parts.iter().find(|(known, _)| *known == name);
-        page.push_str(part.unwrap_or_else(|| panic!("the page asks for {name}")).1);
-        left = after;
-    }
-    page + left
-}
-
-/// The hash of an inline style or script for a content security policy.
-fn hash(text: &str) -> String {
-    format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(text.as_bytes())))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn inserted_text_is_not_searched_for_names() {
-        assert_eq!(filled("a {{one}} {{two}} }}", &[("one", "{{two}}"), ("two", "{{")]), "a {{two}} {{ }}");
     }
 }

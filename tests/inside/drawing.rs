@@ -3,7 +3,9 @@
 use super::super::Comparison;
 use super::super::verdict::Verdict;
 use super::*;
-use std::path::PathBuf;
+use crate::runner::Runner;
+use crate::scene::Limits;
+use std::path::{Path, PathBuf};
 
 /// Every scene that ships.
 fn shipped() -> Vec<PathBuf> {
