@@ -109,7 +109,8 @@ fn draw_scene(
             Next::Working => {}
             Next::TimeSeries(history) => course = history,
             Next::Frame(frame) => {
-                drawing.add(&frame, || composer.get_or_insert_with(|| Composer::new(&scene, &course)).compose(&frame))?;
+                drawing
+                    .add(&frame, || composer.get_or_insert_with(|| Composer::new(&scene, &course)).compose(&frame))?;
             }
             Next::Done => break,
         }

@@ -118,7 +118,10 @@ mod tests {
         ";
         let before = of_scene(&scene(folder.path(), text), None, &[]);
         let told = |after: &str| -> Vec<String> {
-            changed(&before, &of_scene(&scene(folder.path(), after), None, &[])).iter().map(ToString::to_string).collect()
+            changed(&before, &of_scene(&scene(folder.path(), after), None, &[]))
+                .iter()
+                .map(ToString::to_string)
+                .collect()
         };
         // Changed comments and notations of numbers are not reported.
         assert_eq!(told(&text.replace("1e4 }", "10000.0 } # ten thousand")), [""; 0]);
