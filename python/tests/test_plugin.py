@@ -173,7 +173,7 @@ def test_wrong_tests(pytester):
     def test_nothing():
         scene()
 
-    @pytest.mark.localshape(nmae="x")
+    @pytest.mark.localshape(label="x")
     def test_key():
         return scene()
 
@@ -208,7 +208,7 @@ def test_wrong_tests(pytester):
     for line in [
         "the test returned 3; expected a localshape.Scene or localshape.Result",
         "the test returned None; expected a localshape.Scene",
-        "localshape() got an unexpected keyword argument 'nmae'",
+        "localshape() got an unexpected keyword argument 'label'",
         f"the golden {pytester.path / 'goldens/same'} is that of test_drop.py::test_same[1], too",
         "unittest drops what its tests return",
         "RuntimeError: its own",

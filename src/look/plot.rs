@@ -39,10 +39,12 @@ pub enum Measure {
     Force,
     /// Its torque about the origin (N m).
     Torque,
-    /// The displacement of nodes since the start (m): their mean, in a band from the least to the greatest one. Of an obstacle that of its pivot.
+    /// The displacement of nodes from where they are placed (m): their mean, in a band from the least to the greatest one. Of an obstacle that of its pivot
+    /// since the start.
     Displacement,
 }
 
+#[cfg(feature = "render")]
 impl Measure {
     /// Its name and its unit.
     pub(crate) fn words(self) -> [&'static str; 2] {
@@ -83,6 +85,7 @@ impl Plot {
     }
 
     /// Whether its axis to the right is that of time.
+    #[cfg(feature = "render")]
     pub(crate) fn is_over_time(&self) -> bool {
         self.of().is_none_or(|of| of.against.is_none())
     }

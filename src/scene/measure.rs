@@ -42,13 +42,13 @@ pub(crate) struct Meter<'a> {
 /// What has a displacement.
 #[derive(Debug)]
 enum Moved<'a> {
-    /// Nodes of a run with their places at the start (m).
+    /// Nodes of a run with the places from which they count (m).
     Nodes(Vec<(usize, DVec3)>),
     Obstacle(&'a Obstacle),
 }
 
 impl Moved<'_> {
-    /// The displacement of each node since the start, or that of the pivot of an obstacle (m).
+    /// The displacement of each node from where it is placed, or that of the pivot of an obstacle since the start (m).
     fn ways(&self, time: f64, position: &[DVec3]) -> Vec<DVec3> {
         match self {
             Self::Nodes(nodes) => {
@@ -140,7 +140,7 @@ impl Scene {
             Some(probe) => (0..run.of.len()).flat_map(|at| probe.in_body(run, at)).collect(),
             None => grips.flat_map(|(grip, _)| &grip.nodes).map(|&node| node as usize).collect(),
         };
-        let start = |node: usize| (node, run.initial.position[node]);
+        let start = |node: usize| (node, run.placed()[node]);
         (!nodes.is_empty()).then(|| Moved::Nodes(nodes.into_iter().map(start).collect()))
     }
 
@@ -159,10 +159,10 @@ impl Scene {
     }
 
     /// The mean displacement of the nodes of a probe in a body of a run, or in all, with nodes at positions (m), then the mean, the least and the
-    /// greatest of their distances from the start (m); NaN without nodes.
+    /// greatest of their distances from where they are placed (m); NaN without nodes.
     pub(crate) fn displaced(&self, run: &Run, probe: &Probe, on: Option<usize>, position: &[DVec3]) -> [f64; 6] {
         let bodies = on.map_or(0..run.of.len(), |on| on..on + 1);
-        let ways = bodies.flat_map(|at| probe.in_body(run, at)).map(|node| position[node] - run.initial.position[node]);
+        let ways = bodies.flat_map(|at| probe.in_body(run, at)).map(|node| position[node] - run.placed()[node]);
         let ways: Vec<DVec3> = ways.collect();
         let mean = ways.iter().sum::<DVec3>() / ways.len() as f64;
         let lengths = || ways.iter().map(|way| way.length());

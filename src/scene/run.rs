@@ -24,6 +24,8 @@ pub struct Run {
     pub initial: State,
     /// What is left of the forces at the start, if it starts at rest.
     pub rest: Option<Rest>,
+    /// Where its nodes are placed (m), if it starts at rest elsewhere.
+    pub(crate) placed: Option<Vec<DVec3>>,
     /// The elastic model of each body; empty for a recording.
     pub models: Vec<Arc<dyn ElasticModel>>,
     /// The recording that it shows.
@@ -84,6 +86,11 @@ impl Run {
     /// Each model with its body at rest.
     pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
         self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
+    }
+
+    /// Where its nodes are placed (m), from which displacements count.
+    pub(crate) fn placed(&self) -> &[DVec3] {
+        self.placed.as_ref().unwrap_or(&self.initial.position)
     }
 
     /// What acts on its bodies: gravity (m/s²), obstacles, contact as the scene says, and its own constraints and loads.

@@ -752,7 +752,7 @@ fn forces_of_holds_are_columns() {
     // The end hangs below, and `run.json` has the peaks of all of these.
     let [least, mean, most] = ["least", "mean", "greatest"].map(|key| number(&format!("displacement of end_{key}")));
     assert!(0.0 < least && least <= mean && mean <= most && number("displacement of end_y") < -0.5 * mean);
-    let summary: serde_json::Value = serde_json::from_str(&place.read("output/held/run.json")).expect("JSON");
+    let summary: Value = serde_json::from_str(&place.read("output/held/run.json")).expect("JSON");
     let peak = |which: &str, key: &str| summary["runs"][0][which][key]["value"].as_f64().expect(key);
     let force =
         ["x", "y", "z"].map(|axis| number(&format!("force of hold[0]_{axis}")).powi(2)).iter().sum::<f64>().sqrt();

@@ -51,7 +51,7 @@ fn charts_name_things_that_are_there() {
 #[test]
 fn probes_have_names_of_their_own() {
     let case = |probe: &str, expected: &str| expect(&bad(&format!("{WORLD}probe = [{probe}]")), 6, expected);
-    case("{ name = 'end', nodes = 'rigt' }", "1:34 did you mean \"right\"?");
+    case("{ name = 'end', nodes = 'tpo' }", "1:34 did you mean \"top\"?");
     case("{ name = 'ground', nodes = 'right' }", "1:19 an obstacle and a probe are called \"ground\"");
     case("{ name = 'hold[0]', nodes = 'right' }", "1:19 a constraint and a probe are called \"hold[0]\"");
     case("{ nodes = 'right' }", "1:10 `probe[0]` has no `name`");

@@ -46,7 +46,7 @@ fn a_scene_in_code_starts_at_rest() {
         .gravity([0.0, -9.8, 0.0])
         .at_rest()
         .run("Shapes", shape_based::Parameters::new(5e3))
-        .hold(NodeSet::Side(Side::Top), ..)
+        .hold(NodeSet::side(Side::Top), ..)
         .build(&Limits::default())
         .expect("a scene");
     assert_eq!(scene.runs[0].initial.position, good(HANGING).runs[0].initial.position);
@@ -65,4 +65,14 @@ fn what_has_no_rest_is_told_with_the_remedy() {
         0,
         "1:33 `time.start` is \"rest\"; expected \"equilibrium\"",
     );
+}
+
+/// Displacements count from where nodes are placed.
+#[test]
+fn a_deflection_is_the_displacement_at_the_start() {
+    let scene = good(&format!("{HANGING}probe = [{{ name = 'end', nodes = 'bottom' }}]\n"));
+    let run = &scene.runs[0];
+    let [_, down, ..] = scene.displaced(run, &scene.probes[0], None, &run.initial.position);
+    let sunk = run.initial.position[0].y - scene.bodies[0].initial.position[0].y;
+    assert!((down / sunk - 1.0).abs() < 1e-6 && down < -1e-3, "{down} {sunk}");
 }

@@ -33,13 +33,16 @@ pub(in crate::picture) struct Timeline {
     still: [Vec<Item>; 2],
 }
 
+/// A point of a chart, with the time when it is there (s).
+type Timed = (f64, [f64; 2]);
+
 /// The present values in a chart.
 #[derive(Debug)]
 struct Moving {
     diagnostic: Option<Diagnostic>,
     is_over_time: bool,
-    /// For each run shown its colour and, of what is measured of one thing, points with the times when they are there.
-    runs: Vec<(usize, Colour, Vec<(f64, [f64; 2])>)>,
+    /// For each run shown its colour and, of what is measured of one thing, points.
+    runs: Vec<(usize, Colour, Vec<Timed>)>,
 }
 
 impl Moving {

@@ -87,7 +87,7 @@ pub(in crate::scene) struct GrabFile {
     pub(in crate::scene) path: MotionPath,
 }
 
-/// Nodes whose displacement since the start is measured: columns of `diagnostics.csv`, peaks in `run.json`.
+/// Nodes whose displacement from where they are placed is measured: columns of `diagnostics.csv`, peaks in `run.json`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct ProbeFile {

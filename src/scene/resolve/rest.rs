@@ -28,7 +28,7 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
         match found {
             Some(Ok(found)) => {
                 run.rest = Some(Rest { residual: found.residual, evaluations: found.evaluations });
-                run.initial.position = found.position;
+                run.placed = Some(std::mem::replace(&mut run.initial.position, found.position));
             }
             Some(Err(why)) => {
                 // Other runs mostly have the same mistake.

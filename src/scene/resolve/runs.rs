@@ -180,6 +180,7 @@ impl Resolved<'_> {
             bodies,
             initial,
             rest: None,
+            placed: None,
             models,
             recording,
             grips,
