@@ -25,9 +25,11 @@ pub struct PlotOf {
     pub of: String,
     /// Whose displacement is the axis to the right: a probe, a hold, a grab or an obstacle. Its mean over nodes counts, along the direction.
     /// Default: the axis is that of time.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
     /// The direction, of any length but zero, along which forces and displacements count, with a sign. Default: their magnitude over time;
     /// with `against` the direction from the start of its path to the farthest point of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub along: Option<Coordinates>,
 }
 

@@ -463,12 +463,13 @@ impl Scene {
 }
 
 impl History {
-    /// Simulates runs of a scene from start to end, with all diagnostics.
+    /// Simulates runs of a scene from start to end, with all diagnostics, and what charts of the scene plot of single things.
     ///
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        Self::with(scene, runs, &Plot::diagnostics())
+        let single = scene.view.charts.iter().filter(|plot| plot.of().is_some()).cloned();
+        Self::with(scene, runs, &Plot::diagnostics().into_iter().chain(single).collect::<Vec<_>>())
     }
 
     /// Simulates runs of a scene from start to end for their pictures: charts, paths, cameras that follow, and the size

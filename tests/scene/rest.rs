@@ -55,15 +55,15 @@ fn a_scene_in_code_starts_at_rest() {
 #[test]
 fn what_has_no_rest_is_told_with_the_remedy() {
     let free = HANGING.replace("hold = [{ nodes = 'top' }]\n", "");
-    let message = "1:33 \"Shapes\" finds no state of rest: nothing holds the body against 39.2 N hold nodes with [[hold]], or put an obstacle \
+    let message = "1:32 \"Shapes\" finds no state of rest: nothing holds the body against 39.2 N hold nodes with [[hold]], or put an obstacle \
                    below it";
     expect(&bad(&free), 0, message);
     let turning = free.replace("gravity = [0, -9.8, 0]\n", "load = [{ torque = [0, 0, 1], nodes = 'top' }]\n");
-    expect(&bad(&turning), 0, "1:33 \"Shapes\" finds no state of rest: after ");
+    expect(&bad(&turning), 0, "1:32 \"Shapes\" finds no state of rest: after ");
     expect(
         &bad(&HANGING.replace("'equilibrium'", "'rest'")),
         0,
-        "1:33 `time.start` is \"rest\"; expected \"equilibrium\"",
+        "1:32 `time.start` is \"rest\"; expected \"equilibrium\"",
     );
 }
 
