@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ._errors import Mistake
 from ._tables import Diagnostics, Divergence
 
-__all__ = ["Picture", "Result", "RunResult", "Scene", "World", "__version__", "_program"]
+__all__ = ["Picture", "Result", "RunResult", "Scene", "World", "__version__", "_compare", "_index", "_program"]
 
 __version__: str
 

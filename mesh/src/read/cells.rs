@@ -55,7 +55,7 @@ pub struct Cells {
     pub points: Vec<DVec3>,
     /// The kind of each cell.
     pub kinds: Vec<CellKind>,
-    /// The points of each cell without those between its corners, in the order of [`Solids::Ordered`].
+    /// The points of each cell without those between its corners, in the order of [`Solids::Ordered`](localshape_sim::Solids::Ordered).
     pub corners: IndexLists,
     /// Sets of points with a name, in ascending order.
     pub groups: Vec<Group>,
