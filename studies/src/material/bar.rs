@@ -8,20 +8,20 @@ use localshape::sim::{Body, Material};
 use std::sync::Arc;
 
 /// A bar.
-pub(crate) struct Bar {
-    pub(crate) body: Arc<Body>,
+pub(super) struct Bar {
+    pub(super) body: Arc<Body>,
     /// Length of a cell's edges (m).
     side: f64,
     /// Width and depth, along y and x (m).
-    pub(crate) section: [f64; 2],
-    pub(crate) length: f64,
+    pub(super) section: [f64; 2],
+    pub(super) length: f64,
     /// Nodes at the held end and at the loaded one.
     ends: [Vec<usize>; 2],
 }
 
 impl Bar {
     /// A bar of cells of a side (m), along x, y and z, with a density (kg/m³).
-    pub(crate) fn new(elements: Elements, cells: [u32; 3], side: f64, density: f64) -> Self {
+    pub(super) fn new(elements: Elements, cells: [u32; 3], side: f64, density: f64) -> Self {
         let body = elements.block(&cells, side, (0.0, 1), density);
         let [depth, width, length] = cells.map(|cells| f64::from(cells) * side);
         let ends = [-0.5, 0.5].map(|end| Self::layer(&body, end * length, side));
@@ -33,15 +33,9 @@ impl Bar {
     }
 
     /// A load (N) on the end, on each node in proportion to the area of the end around it.
-    pub(crate) fn load(&self, total: DVec3) -> Vec<DVec3> {
-        self.load_on(1, total)
-    }
-
-    /// The same on its first end, 0, or its last one, 1.
-    pub(crate) fn load_on(&self, end: usize, total: DVec3) -> Vec<DVec3> {
-        let end = &self.ends[end];
+    fn load(&self, total: DVec3) -> Vec<DVec3> {
         let [low, high] = [f64::min, f64::max].map(|pick| {
-            let rest = end.iter().map(|&node| self.body.rest()[node]);
+            let rest = self.ends[1].iter().map(|&node| self.body.rest()[node]);
             rest.reduce(|one, other| DVec3::new(pick(one.x, other.x), pick(one.y, other.y), 0.0)).unwrap_or_default()
         });
         let is_rim = |at: f64, low: f64, high: f64| (at - low).abs().min((at - high).abs()) < 1e-6 * self.side;
@@ -49,9 +43,9 @@ impl Bar {
             let rims = [is_rim(rest.x, low.x, high.x), is_rim(rest.y, low.y, high.y)];
             rims.iter().map(|&is_rim| if is_rim { 0.5 } else { 1.0 }).product::<f64>()
         };
-        let whole: f64 = end.iter().map(|&node| part(self.body.rest()[node])).sum();
+        let whole: f64 = self.ends[1].iter().map(|&node| part(self.body.rest()[node])).sum();
         let mut load = vec![DVec3::ZERO; self.body.len()];
-        end.iter().for_each(|&node| load[node] = total * (part(self.body.rest()[node]) / whole));
+        self.ends[1].iter().for_each(|&node| load[node] = total * (part(self.body.rest()[node]) / whole));
         load
     }
 
@@ -78,42 +72,23 @@ impl Bar {
     }
 
     /// The nodes at its held end.
-    pub(crate) fn held(&self) -> &[usize] {
+    pub(super) fn held(&self) -> &[usize] {
         &self.ends[0]
     }
 
-    /// The nodes of the layer nearest to a share of its length from its middle.
-    pub(crate) fn layer_at(&self, share: f64) -> Vec<usize> {
-        let height = libm::round((share + 0.5) * self.length / self.side) * self.side - 0.5 * self.length;
-        Self::layer(&self.body, height, self.side)
-    }
-
-    /// The nodes of its loaded end with the least and with the greatest x.
-    pub(crate) fn sides(&self) -> [Vec<usize>; 2] {
-        [-0.5, 0.5].map(|share| {
-            let is_there = |node: usize| (self.body.rest()[node].x - share * self.section[1]).abs() < 1e-6 * self.side;
-            self.ends[1].iter().copied().filter(|&node| is_there(node)).collect()
-        })
-    }
-
-    /// The mean displacement of its held end (m).
-    pub(crate) fn foot(&self, position: &[DVec3]) -> DVec3 {
-        mean_shift(&self.body, position, &self.ends[0])
-    }
-
     /// The mean displacement of its loaded end (m).
-    pub(crate) fn tip(&self, position: &[DVec3]) -> DVec3 {
+    pub(super) fn tip(&self, position: &[DVec3]) -> DVec3 {
         mean_shift(&self.body, position, &self.ends[1])
     }
 
     /// `E I` (N m²), with the load across the depth.
-    pub(crate) fn rigidity(&self, material: Material) -> f64 {
+    pub(super) fn rigidity(&self, material: Material) -> f64 {
         let [width, depth] = self.section;
         material.young * width * depth * depth * depth / 12.0
     }
 
     /// A model of a material on the bar, and the material that it is there. For springs that is what one measures by pulling the bar.
-    pub(crate) fn model(&self, model: &Model, material: Material) -> Option<(Arc<dyn ElasticModel>, Material)> {
+    pub(super) fn model(&self, model: &Model, material: Material) -> Option<(Arc<dyn ElasticModel>, Material)> {
         let made = model.on(&self.body, material, self.side)?;
         let is = if model.is_springs() { self.pulled(made.as_ref(), material)? } else { material };
         Some((made, is))
@@ -135,12 +110,14 @@ impl Bar {
         let [width, depth] = self.section;
         let load = STRAIN * about.young * width * depth;
         let found = balance(&self.body, model, &self.load(DVec3::Z * load), &held, self.body.rest())?;
-        let layers = [-0.25, 0.25].map(|share| self.layer_at(share));
-        let [low, high] = [0, 1].map(|at| mean_shift(&self.body, &found, &layers[at]).z);
-        let [bottom, top] = [0, 1].map(|at| self.body.rest()[layers[at][0]].z);
-        let strain = (high - low) / (top - bottom);
+        let layers = [-0.25, 0.25].map(|share| {
+            let height = libm::round((share + 0.5) * self.length / self.side) * self.side - 0.5 * self.length;
+            (height, Self::layer(&self.body, height, self.side))
+        });
+        let [low, high] = [0, 1].map(|at| mean_shift(&self.body, &found, &layers[at].1).z);
+        let strain = (high - low) / (layers[1].0 - layers[0].0);
         // The sides at half of the depth away from the middle.
-        let middle: Vec<_> = layers.iter().flatten().copied().collect();
+        let middle: Vec<_> = layers.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
         let side = |sign: f64| -> Vec<usize> {
             let is_there = |&node: &usize| (self.body.rest()[node].x - 0.5 * sign * depth).abs() < 1e-6 * self.side;
             middle.iter().copied().filter(is_there).collect()

@@ -13,7 +13,6 @@ mod theory;
 mod time;
 
 pub(crate) use balance::Forces;
-pub(crate) use bar::Bar;
 pub(crate) use beam::Beam;
 pub(crate) use cook::Cook;
 pub(crate) use patch::Patch;
@@ -34,12 +33,12 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Model {
     /// Its name in tables, without its elements.
-    pub(crate) name: &'static str,
+    name: &'static str,
     /// As in a scene.
-    pub(crate) kind: &'static str,
+    kind: &'static str,
     /// A further key and its value.
     more: Option<[&'static str; 2]>,
-    pub(crate) elements: Elements,
+    elements: Elements,
 }
 
 /// Elements of a lattice.
@@ -90,7 +89,7 @@ impl Model {
     }
 
     /// A row of a table: its name and its elements, then other cells.
-    pub(crate) fn row(&self, is_flat: bool, cells: impl IntoIterator<Item = Cell>) -> Vec<Cell> {
+    fn row(&self, is_flat: bool, cells: impl IntoIterator<Item = Cell>) -> Vec<Cell> {
         let names: [Cell; 2] = [format!("`{}`", self.name).into(), self.elements.name(is_flat).into()];
         names.into_iter().chain(cells).collect()
     }
@@ -108,12 +107,12 @@ impl Model {
     }
 
     /// Whether `E` and `ν` follow from springs and from the body, in place of a material with any of them.
-    pub(crate) fn is_springs(&self) -> bool {
+    fn is_springs(&self) -> bool {
         models::is_springs(self.kind)
     }
 
     /// The model of a material on a body of cells with a side (m). `None` for a model that does not take this body.
-    pub(crate) fn on(&self, body: &Body, material: Material, side: f64) -> Option<Arc<dyn ElasticModel>> {
+    fn on(&self, body: &Body, material: Material, side: f64) -> Option<Arc<dyn ElasticModel>> {
         let more = self.more.map(|[key, value]| (key.to_owned(), json!(value)));
         Alike::material(material, 0.5 * side).model(body, self.kind, 0.0, more)
     }
@@ -123,7 +122,7 @@ impl Elements {
     const ALL: [Self; 2] = [Self::Cells, Self::Simplices];
 
     /// The name of the elements in space and in the plane.
-    pub(crate) fn name(self, is_flat: bool) -> &'static str {
+    fn name(self, is_flat: bool) -> &'static str {
         match (self, is_flat) {
             (Self::Cells, false) => "hexahedra",
             (Self::Cells, true) => "quadrilaterals",
@@ -133,7 +132,7 @@ impl Elements {
     }
 
     /// A block of cells of a side (m), disturbed as `irregular` in scenes, with a density (kg/m³).
-    pub(crate) fn block(self, cells: &[u32], side: f64, (irregular, seed): (f64, u32), density: f64) -> Arc<Body> {
+    fn block(self, cells: &[u32], side: f64, (irregular, seed): (f64, u32), density: f64) -> Arc<Body> {
         let elements = match (self, cells.len()) {
             (Self::Cells, _) => Cells::Cells,
             (Self::Simplices, 2) => Cells::Triangles,
@@ -154,6 +153,6 @@ fn mean_shift(body: &Body, position: &[DVec3], nodes: &[usize]) -> DVec3 {
 }
 
 /// A number with some decimals, or a dash.
-pub(crate) fn decimals(number: Option<f64>, decimals: usize) -> Cell {
+fn decimals(number: Option<f64>, decimals: usize) -> Cell {
     or_dash(number.map(|number| format!("{number:.decimals$}")))
 }
