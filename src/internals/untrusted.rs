@@ -63,7 +63,7 @@ pub fn read(name: &str, bytes: &[u8]) {
 }
 
 /// Scenes that are read within milliseconds.
-const LIMITS: Limits = Limits { nodes: 1000, corners: 10_000, springs: 20_000, file: 1 << 20, recorded: 10_000 };
+const LIMITS: Limits = Limits { nodes: 1000, corners: 8000, springs: 20_000, file: 1 << 20, recorded: 10_000 };
 
 /// The scene to which states, checkpoints and bodies of tests belong.
 pub const SCENE: &str = "
