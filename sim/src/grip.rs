@@ -26,6 +26,11 @@ impl Grip {
         Pose { shift: now.shift - first.shift, rotation: now.rotation * first.rotation.conjugate() }
     }
 
+    /// The time (s) after which it does not change: it holds nodes still, or has released them.
+    pub fn end(&self) -> f64 {
+        if self.until.is_finite() { self.until } else { self.from.max(self.motion.end()) }
+    }
+
     /// Whether the nodes follow the path at a time (s).
     pub fn holds(&self, time: f64) -> bool {
         self.from <= time && time <= self.until

@@ -82,6 +82,12 @@ impl Course {
         }
     }
 
+    /// The time (s) after which the share does not change.
+    pub fn end(&self) -> f64 {
+        let ends = [self.during.start, self.during.end].into_iter().filter(|end| end.is_finite());
+        ends.chain(self.keys.last().map(|[time, _]| *time)).fold(0.0, f64::max)
+    }
+
     /// Whether the share is the same during a step, with its ends.
     fn is_steady(&self, Interval { begin, end, .. }: Interval) -> bool {
         let starts_or_ends = [self.during.start, self.during.end].iter().any(|&at| begin < at && at <= end);

@@ -8,3 +8,10 @@ pub struct Mode {
     /// `c` (1/s).
     pub damping: f64,
 }
+
+impl Mode {
+    /// With more damping, of the masses (1/s): the same of all modes.
+    pub(crate) fn damped_more(self, damping: f64) -> Self {
+        Self { damping: self.damping + damping, ..self }
+    }
+}

@@ -179,6 +179,15 @@ impl Motion {
         }
     }
 
+    /// The time (s) after which nothing moves: infinite for a motion without end, and for a path of the caller's own.
+    pub fn end(&self) -> f64 {
+        match self {
+            Self::Still => 0.0,
+            Self::Keys { keys, repeat: false, .. } => keys.last().map_or(0.0, |key| key.time),
+            Self::Keys { .. } | Self::Swing { .. } | Self::Along(_) => f64::INFINITY,
+        }
+    }
+
     /// The greatest distance (m) between two points of the path, at a distance from the pivot (m). A kinematic
     /// constraint may stretch a body by as much, and the speed of nodes after their release has no bound by the size of
     /// the body at rest.

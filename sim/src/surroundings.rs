@@ -1,4 +1,4 @@
-//! What acts on bodies from outside: gravity, forces on nodes, obstacles and kinematic constraints.
+//! What acts on bodies from outside: gravity, damping of all motion, forces on nodes, obstacles and kinematic constraints.
 
 use super::contact::{Contacts, Obstacle, Shape, Side};
 use super::grip::Grip;
@@ -7,11 +7,14 @@ use super::motion::{Interval, Motion, Offset};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Gravity, forces, obstacles and kinematic constraints around bodies.
+/// Gravity, damping of all motion, forces, obstacles and kinematic constraints around bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     /// Acceleration of gravity (m/s²).
     pub gravity: DVec3,
+    /// Damping in proportion to masses, `α` of Rayleigh (1/s): the force `−α m V` on each node. It brakes all motion, also that of a body as
+    /// a whole, and slow oscillations the most: the damping ratio of a mode with angular frequency `ω` is `α / 2ω`.
+    pub mass_damping: f64,
     /// Obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
     /// How surfaces meet; `None` for contact of nodes with obstacles alone, as in the paper.
@@ -28,7 +31,7 @@ pub struct Surroundings {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct WrongSurroundings {
-    /// What is wrong: a `node`, an `obstacle`, a `grip`, a `contact` (of a body, or a pair), or `gravity`.
+    /// What is wrong: a `node`, an `obstacle`, a `grip`, a `contact` (of a body, or a pair), `gravity`, or `mass_damping`.
     pub of: &'static str,
     /// Its number, counted from 0.
     pub at: usize,
@@ -48,6 +51,10 @@ impl Surroundings {
         if !self.gravity.is_finite() {
             let message = format!("gravity is {}; expected finite numbers (m/s²)", self.gravity);
             return Err(WrongSurroundings { of: "gravity", at: 0, message });
+        }
+        if !(self.mass_damping >= 0.0 && self.mass_damping.is_finite()) {
+            let message = format!("mass_damping is {}; expected a finite number, 0 or more (1/s)", self.mass_damping);
+            return Err(WrongSurroundings { of: "mass_damping", at: 0, message });
         }
         if !self.forces.is_empty() {
             check_vectors("force", "forces", &self.forces, nodes)?;

@@ -115,10 +115,10 @@ impl System {
 
     /// Whether forces depend on velocities.
     pub(super) fn is_damped(&self) -> bool {
-        self.parts.iter().any(|part| part.forces.is_damped())
+        self.surroundings.mass_damping > 0.0 || self.parts.iter().any(|part| part.forces.is_damped())
     }
 
-    /// Gravity and forces from outside at a time (s), then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and
+    /// Gravity, damping of masses and forces from outside at a time (s), then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and
     /// the models' `next` memory. Models that project positions exert none.
     pub(super) fn forces(
         &self,
@@ -132,6 +132,11 @@ impl System {
         scratch.share(&self.crew);
         for (force, &mass) in forces.iter_mut().zip(&self.mass) {
             *force = self.surroundings.gravity * mass;
+        }
+        if self.surroundings.mass_damping > 0.0 {
+            for ((force, &mass), &velocity) in forces.iter_mut().zip(&self.mass).zip(at.velocity) {
+                *force -= velocity * (self.surroundings.mass_damping * mass);
+            }
         }
         self.surroundings.push(time, at.position, forces);
         for part in self.parts.iter().filter(|part| part.projection.is_none()) {

@@ -3,7 +3,7 @@
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::runner::{Frame, TableRow, TimeSeries};
-use crate::scene::{Rest, Scene};
+use crate::scene::{AtRest, Rest, Scene};
 use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
@@ -109,6 +109,9 @@ pub(crate) struct RunEntry {
     /// How near to rest it starts; absent if it does not start at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<Rest>,
+    /// When it comes to rest; absent if the scene does not end then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub comes_to_rest: Option<AtRest>,
     /// The cause of its divergence; absent if it did not diverge, or if its states are read from a file.
     #[serde(flatten)]
     pub cause: Option<Cause>,
@@ -217,6 +220,7 @@ impl Summary {
                 bodies: run.body_names(scene).map(str::to_owned).collect(),
                 time_step: run.step,
                 rest: run.rest,
+                comes_to_rest: run.comes_to_rest,
                 ..RunEntry::default()
             }
         };

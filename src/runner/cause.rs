@@ -140,12 +140,12 @@ impl Cause {
 
     /// Why steps that are stable for a body at rest may be too long, if they are stable there and not for certain in any state.
     fn stiffer(scene: &Scene, run: usize, part: usize) -> Option<String> {
-        let Run { step, integrator, models, bodies, grips, .. } = &scene.runs[run];
-        let certain = Stability::certain(&bodies.bodies()[part], &*models[part], *integrator);
+        let Run { step, integrator, models, bodies, .. } = &scene.runs[run];
+        let certain = Stability::certain(&bodies.bodies()[part], &*models[part], *integrator, scene.mass_damping);
         if certain.is_some_and(|certain| *step <= certain) {
             return None;
         }
-        let limit = Stability::of_each(bodies, models, *integrator, grips, scene.duration)[part].largest;
+        let limit = Stability::of_each(bodies, models, *integrator, scene.restraint(run))[part].largest;
         let words = || {
             format!(
                 "up to {} they are stable at rest, but this model can stiffen when it is stretched",

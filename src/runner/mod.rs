@@ -14,7 +14,7 @@ mod stored;
 use crate::look::{Plot, Traced};
 use crate::scene::measure::Meter;
 use crate::scene::{Recorded, Scene};
-use crate::sim::{Body, Crew, Diagnostic, Diagnostics, Integrator, Moment, State, Status, Stepping, World};
+use crate::sim::{Body, Crew, Diagnostic, Diagnostics, Moment, State, Status, World};
 pub use frame::{Frame, LastFit, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
 pub(crate) use history::TableRow;
@@ -424,41 +424,6 @@ impl Running<'_> {
         for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {
             path.push(traced.of(&self.body, position));
         }
-    }
-}
-
-impl Scene {
-    /// The world of one run, at its start.
-    ///
-    /// # Panics
-    /// If the scene has no such run.
-    pub fn world(&self, run: usize) -> World {
-        let run = &self.runs[run];
-        let surroundings = run.surroundings(self.gravity, &self.obstacles, self.contacts.as_ref());
-        let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
-        let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
-        let bodies = run.bodies.bodies();
-        let mut world = match &run.recording {
-            Some(recording) => {
-                let player = Box::new(recording.player(run.step));
-                World::recorded(bodies, run.initial.clone(), self.gravity, run.step, player)
-            }
-            None => {
-                let models = run.models.iter().map(|model| &**model);
-                let parts: Vec<_> = bodies.iter().map(Arc::clone).zip(models).collect();
-                World::of_parts(&parts, run.initial.clone(), surroundings, stepping)
-            }
-        };
-        world.show(self.view.colour.map(|scale| scale.field));
-        if self.keeps_forces() {
-            self.keep_contact(&mut world);
-        }
-        world
-    }
-
-    /// Keeps the forces of contact, over the intervals between rows of `diagnostics.csv`, or else between frames.
-    fn keep_contact(&self, world: &mut World) {
-        world.keep_reactions(self.every.map_or(self.moment(1), Moment::at));
     }
 }
 

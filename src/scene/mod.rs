@@ -38,6 +38,7 @@ mod summary;
 mod syntax;
 mod turning;
 mod typed;
+mod world;
 
 pub use crate::reading::captions::description;
 pub use crate::reading::setting::Setting;
@@ -55,7 +56,7 @@ pub(crate) use load::{is_figure_file, keys_in_memory, keys_of};
 pub use measure::{Probe, Reading};
 pub use recording::Recorded;
 pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};
-pub use run::{Rest, Run};
+pub use run::{AtRest, Rest, Run};
 pub use schema::schema;
 pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 #[cfg(feature = "render")]
@@ -84,6 +85,8 @@ pub struct Scene {
     pub digest: String,
     /// Acceleration of gravity (m/s²).
     pub gravity: DVec3,
+    /// Damping in proportion to masses (1/s); see [`Surroundings::mass_damping`](crate::sim::Surroundings::mass_damping).
+    pub mass_damping: f64,
     /// Simulated time (s).
     pub duration: f64,
     /// Frames per second of simulated time (1/s).

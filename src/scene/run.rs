@@ -24,6 +24,8 @@ pub struct Run {
     pub initial: State,
     /// What is left of the forces at the start, if it starts at rest.
     pub rest: Option<Rest>,
+    /// When it comes to rest, if the scene ends then.
+    pub comes_to_rest: Option<AtRest>,
     /// Where its nodes are placed (m), if it starts at rest elsewhere.
     pub(crate) placed: Option<Vec<DVec3>>,
     /// The elastic model of each body; empty for a recording.
@@ -61,6 +63,17 @@ pub struct Rest {
     pub evaluations: u64,
 }
 
+/// When a run comes to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AtRest {
+    /// The first frame at which it is at rest.
+    pub frame: u64,
+    /// The greatest kinetic energy since the frame before (J).
+    pub kinetic_energy: f64,
+    /// The mean forces that were left since the frame before, as a share of gravity and loads; 0 without these.
+    pub residual: f64,
+}
+
 impl Run {
     /// All its bodies as one.
     pub fn body(&self) -> &Arc<Body> {
@@ -93,15 +106,16 @@ impl Run {
         self.placed.as_ref().unwrap_or(&self.initial.position)
     }
 
-    /// What acts on its bodies: gravity (m/s²), obstacles, contact as the scene says, and its own constraints and loads.
+    /// What acts on its bodies: gravity (m/s²), damping of masses (1/s), obstacles, contact as the scene says, and its own constraints and loads.
     pub(crate) fn surroundings(
         &self,
-        gravity: DVec3,
+        (gravity, mass_damping): (DVec3, f64),
         obstacles: &[Obstacle],
         contacts: Option<&Contacts>,
     ) -> Surroundings {
         Surroundings {
             gravity,
+            mass_damping,
             obstacles: obstacles.to_vec(),
             contacts: contacts.map(|contacts| self.contacts(contacts)),
             grips: self.grips.clone(),

@@ -4,15 +4,20 @@ use super::{Run, Scene};
 use crate::reading::words::{quoted, short};
 use crate::sim::Integrator;
 use crate::sim::model::ElasticModel;
-use crate::sim::stability::Stability;
+use crate::sim::stability::{Restraint, Stability};
 use std::sync::Arc;
 
 impl Scene {
+    /// What keeps nodes of a run from vibrating.
+    pub(crate) fn restraint(&self, run: usize) -> Restraint<'_> {
+        Restraint { grips: &self.runs[run].grips, duration: self.duration, mass_damping: self.mass_damping }
+    }
+
     /// The largest stable step of a run, and the name of the body that limits it; `None` if the run has only one, or no
     /// limit.
     pub(crate) fn stability(&self, run: usize) -> (Stability, Option<&str>) {
-        let run = &self.runs[run];
-        let each = Stability::of_each(&run.bodies, &run.models, run.integrator, &run.grips, self.duration);
+        let (restraint, run) = (self.restraint(run), &self.runs[run]);
+        let each = Stability::of_each(&run.bodies, &run.models, run.integrator, restraint);
         let all = Stability::of_all(&each);
         let limiting = each.iter().position(|one| one.largest == all.largest);
         let limiting = limiting.filter(|_| each.len() > 1 && all.largest.is_finite());
@@ -24,8 +29,8 @@ impl Scene {
     pub(super) fn near_limit(&self, number: usize) -> Option<[String; 2]> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
-        let Run { bodies, models, grips, integrator, step, .. } = run;
-        let is_far = || Stability::is_below(bodies, models, *integrator, grips, (self.duration, *step / NEAR));
+        let Run { bodies, models, integrator, step, .. } = run;
+        let is_far = || Stability::is_below(bodies, models, *integrator, self.restraint(number), *step / NEAR);
         if run.tolerance.is_some() || is_far() {
             return None;
         }
@@ -69,7 +74,7 @@ impl Scene {
     /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
-        (run.integrator == Integrator::ExplicitEuler && run.is_undamped()).then(|| {
+        (run.integrator == Integrator::ExplicitEuler && self.is_undamped(run)).then(|| {
             let name = quoted(&run.name);
             [
                 format!("`explicit-euler` adds energy to {name} with any step, because the run has no damping"),
@@ -87,13 +92,12 @@ impl Scene {
         let is_elastic = self.obstacles.iter().any(|obstacle| obstacle.restitution == 1.0);
         let has_limit = run.tolerance.is_none() && largest > 0.0 && largest.is_finite();
         let share = run.step / largest;
-        (is_elastic && has_limit && share < 1.0 && run.is_undamped()).then_some(GAIN * share * share)
+        (is_elastic && has_limit && share < 1.0 && self.is_undamped(run)).then_some(GAIN * share * share)
     }
-}
 
-impl Run {
-    /// Whether a body of it has no damping.
-    fn is_undamped(&self) -> bool {
-        self.models.iter().zip(self.bodies.bodies()).any(|(model, body)| !model.prepare(body).is_damped())
+    /// Whether a body of a run has no damping.
+    fn is_undamped(&self, run: &Run) -> bool {
+        let mut parts = run.models.iter().zip(run.bodies.bodies());
+        self.mass_damping == 0.0 && parts.any(|(model, body)| !model.prepare(body).is_damped())
     }
 }

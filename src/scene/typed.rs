@@ -1,6 +1,6 @@
 //! A checked file as typed parts; parts with mistakes are left out.
 
-use super::file::{ContactRule, SceneFile};
+use super::file::{ContactRule, MassDamping, SceneFile};
 use super::structure::Checked;
 use crate::look::TypedView;
 use crate::reading::collector::{Collector, PathPart, key_path};
@@ -19,6 +19,7 @@ impl SceneFile {
         Self {
             title: part(parts, "title", report),
             gravity: part(parts, "gravity", report),
+            mass_damping: part(parts, "mass_damping", report),
             time: part(parts, "time", report),
             body,
             run: entries(parts, "run", report),
@@ -35,6 +36,11 @@ impl SceneFile {
     /// Whether nodes alone meet obstacles, and nothing else meets.
     pub(super) fn meets_by_nodes(&self) -> bool {
         self.contact.as_ref().is_some_and(|contact| contact.rule == Some(ContactRule::Nodes))
+    }
+
+    /// Damping in proportion to masses (1/s).
+    pub(super) fn mass_damping(&self) -> f64 {
+        self.mass_damping.map_or(0.0, MassDamping::rate)
     }
 
     /// Leaves out the parts in which a check of this scene found mistakes.
@@ -58,6 +64,7 @@ impl SceneFile {
         drop(&mut self.load, "load", checked);
         drop(&mut self.probe, "probe", checked);
         self.gravity = self.gravity.take().filter(|_| !checked.flawed.contains("gravity"));
+        self.mass_damping = self.mass_damping.filter(|_| !checked.flawed.contains("mass_damping"));
         if checked.flawed.contains("view") {
             self.view = TypedView::default();
         }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::stability::Stability;
+use localshape::sim::stability::{Restraint, Stability};
 use localshape::sim::{Dimension, State, Stepping, Surroundings, World};
 
 fn scene(text: &str) -> Scene {
@@ -138,7 +138,7 @@ fn certain_steps_are_stable() {
                 let scene = scene(&format!("{body}\nrun = [{{ name = 'a', integrator = '{integrator}', {model} }}]"));
                 let Stability { largest, stretched } = predicted(&scene);
                 let run = &scene.runs[0];
-                let certain = Stability::certain(&scene.bodies[0].body, run.models[0].as_ref(), run.integrator)
+                let certain = Stability::certain(&scene.bodies[0].body, run.models[0].as_ref(), run.integrator, 0.0)
                     .expect("both models know");
                 assert!(certain > 0.0 && certain <= stretched.unwrap_or(largest) * 1.0001, "{certain} {largest}");
             }
@@ -171,8 +171,8 @@ fn steps_that_are_roughly_below_the_limit_are() {
             let Stability { largest, .. } = predicted(&scene);
             let run = &scene.runs[0];
             let is_below = |share: f64| {
-                let step = (scene.duration, share * largest);
-                Stability::is_below(&run.bodies, &run.models, run.integrator, &run.grips, step)
+                let restraint = Restraint { grips: &run.grips, duration: scene.duration, mass_damping: 0.0 };
+                Stability::is_below(&run.bodies, &run.models, run.integrator, restraint, share * largest)
             };
             assert_eq!([is_below(0.25), is_below(1.001)], [true, false], "{model} {damping} {body}");
         }

@@ -76,3 +76,80 @@ fn a_deflection_is_the_displacement_at_the_start() {
     let sunk = run.initial.position[0].y - scene.bodies[0].initial.position[0].y;
     assert!((down / sunk - 1.0).abs() < 1e-6 && down < -1e-3, "{down} {sunk}");
 }
+
+/// A bar that swings on its hold until air has stopped it.
+const SWINGING: &str = "\
+time = { duration = 20, until = 'rest', frames_per_second = 30 }
+gravity = [0, -9.8, 0]
+mass_damping = { ratio = 0.3, frequency = 2 }
+run = [
+  { name = 'Shapes', model = { kind = 'shape-based', stiffness = 5e3 } },
+  { name = 'Springs', model = { kind = 'mass-spring', stiffness = 5e3 } },
+]
+body = { lattice = { cells = [1, 4, 1], side = 0.1 }, density = 1000 }
+hold = [{ nodes = 'top' }]
+";
+
+/// The scene ends with the run that comes to rest last, where a search for rest ends, too.
+#[test]
+fn a_scene_ends_when_all_runs_are_at_rest() {
+    let scene = good(SWINGING);
+    let ends: Vec<_> = scene.runs.iter().map(|run| run.comes_to_rest.expect("rest")).collect();
+    let last = ends.iter().map(|end| end.frame).max().expect("two runs");
+    assert_eq!((scene.last_frame(), scene.duration), (last, last as f64 / 30.0));
+    assert!(
+        last > 30 && last < 120 && ends.iter().all(|end| end.residual < 1e-3 && end.kinetic_energy < 1e-6),
+        "{ends:?}"
+    );
+    let balanced = good(&SWINGING.replace("until = 'rest'", "start = 'equilibrium'"));
+    for run in 0..2 {
+        let mut world = scene.world(run);
+        world.advance_towards(scene.moment(last), u64::MAX);
+        let apart = world.state().position.iter().zip(&balanced.runs[run].initial.position);
+        let apart = apart.map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
+        assert!(apart < 2e-5, "{}: {apart} m", scene.runs[run].name);
+    }
+    let words = scene.summary().to_string();
+    assert!(words.contains("at rest from ") && words.contains("of masses, α = 7.54/s"), "{words}");
+}
+
+/// What moves later, or for ever, is waited for.
+#[test]
+fn rest_begins_after_the_last_change() {
+    assert!(good(SWINGING).duration < 3.5);
+    let lift = "nodes = 'top', path = { keys = [{ time = 4, shift = [0, 0, 0] }, { time = 5, shift = [0, 0.1, 0] }] }";
+    let lifted = SWINGING.replace("hold", "grab").replace("nodes = 'top'", lift);
+    assert!(good(&lifted).duration > 5.0);
+    let pushed = good(&format!("{SWINGING}load = [{{ force = [1, 0, 0], nodes = 'bottom', from = 3.5 }}]\n"));
+    assert!(pushed.duration > 3.5);
+}
+
+#[test]
+fn a_run_that_never_rests_is_told() {
+    let free = SWINGING.replace("hold = [{ nodes = 'top' }]\n", "").replace("duration = 20", "duration = 2");
+    let scene = good(&free);
+    assert_eq!((scene.duration, scene.runs[0].comes_to_rest), (2.0, None));
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    assert!(warning.message.contains("\"Shapes\" and \"Springs\" are not at rest after 2 s"), "{}", warning.message);
+    expect(
+        &bad(&SWINGING.replace("until = 'rest'", "until = 3")),
+        0,
+        "1:33 `time.until` is the whole number 3; expected \"rest\"",
+    );
+}
+
+#[test]
+fn damping_of_masses_is_a_rate_or_a_ratio() {
+    let rate = good(&SWINGING.replace("{ ratio = 0.3, frequency = 2 }", "1.5").replace(", until = 'rest'", ""));
+    assert_eq!((rate.mass_damping, rate.world(0).surroundings().mass_damping), (1.5, 1.5));
+    let scene = good(SWINGING);
+    assert!((scene.mass_damping - 4.0 * std::f64::consts::PI * 0.3 * 2.0).abs() < 1e-14 && scene.digest != rate.digest);
+    let case = |typed: &str, expected: &str| {
+        expect(&bad(&SWINGING.replace("{ ratio = 0.3, frequency = 2 }", typed)), 2, expected);
+    };
+    case("-1", "1:16 `mass_damping` is -1; expected a number of at least 0");
+    case("{ ratio = 0.3 }", "1:16 `mass_damping` has no `frequency`");
+    case("{ ratio = 0.3, frequency = 0 }", "1:43 `mass_damping.frequency` is 0; expected a number greater than 0");
+    let pefrl = SWINGING.replace("time = {", "time = { integrator = 'pefrl',").replace(", until = 'rest'", "");
+    assert!(bad(&pefrl).to_string().contains("has substeps backwards in time"), "{}", bad(&pefrl));
+}

@@ -6,7 +6,7 @@ use localshape_mesh::{Cage, Fill, Filled, Surface, fill};
 use localshape_sim::geometry::volumes_at_rest;
 use localshape_sim::model::ModelParameters;
 use localshape_sim::model::shape_based::{Parameters, ShapeBased};
-use localshape_sim::stability::Stability;
+use localshape_sim::stability::{Restraint, Stability};
 use localshape_sim::{
     Body, Carried, Grip, Integrator, Motion, Obstacle, Shape, Solids, State, Status, Stepping, Surroundings, World,
 };
@@ -110,7 +110,7 @@ fn bodies_of_cubes_have_the_step_of_one_full_cube() {
         let damping = 2.0 * ratio * (stiffness * body.lightest()).sqrt();
         let model = ShapeBased { damping, ..ShapeBased::new(stiffness) };
         let integrator = Integrator::SemiImplicitEuler;
-        let limit = |body| Stability::of(body, &model, integrator, &[], 1.0).largest;
+        let limit = |body| Stability::of(body, &model, integrator, Restraint::default()).largest;
         assert!(limit(&body) > 0.999 * limit(&one), "{name}: {} {}", limit(&body), limit(&one));
         // It falls onto a floor with nearly the largest step.
         let step = 0.9 * limit(&one);

@@ -71,8 +71,8 @@ impl Integrator {
         self == Self::DormandPrince
     }
 
-    /// Why this method cannot advance a model, and which method can; `None` if it can.
-    pub fn refusal(self, model: &dyn ElasticModel, body: &Arc<Body>) -> Option<&'static str> {
+    /// Why this method cannot advance a model with damping of masses (1/s), and which method can; `None` if it can.
+    pub fn refusal(self, model: &dyn ElasticModel, body: &Arc<Body>, mass_damping: f64) -> Option<&'static str> {
         if self == Self::SemiImplicitEuler {
             return None;
         }
@@ -92,7 +92,7 @@ impl Integrator {
                  evaluation before; use `rotation = \"robust\"` without `passes`, or \"velocity-verlet\"",
             ),
             Self::RungeKutta | Self::DormandPrince | Self::BackwardEuler => None,
-            _ if forces.is_damped() => Some(
+            _ if forces.is_damped() || mass_damping > 0.0 => Some(
                 "has substeps backwards in time, in which damping would feed energy in; use \"runge-kutta\" or \
                  \"velocity-verlet\", or take the damping out",
             ),

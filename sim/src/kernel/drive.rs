@@ -65,7 +65,7 @@ impl Dynamics for ByKernel {
             rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
-        let Surroundings { gravity, grips, forces, loads, .. } = &system.surroundings;
+        let Surroundings { gravity, mass_damping, grips, forces, loads, .. } = &system.surroundings;
         let work = system.work.as_ref();
         let loaded = || work.map_or(&[][..], |work| work.nodes()).iter().map(|&node| node as usize);
         let mut steady = Forces::default();
@@ -157,6 +157,7 @@ impl Dynamics for ByKernel {
             }
             let around = Around {
                 gravity: *gravity,
+                mass_damping: *mass_damping,
                 forces: steady.columns(),
                 push: changes.then_some(&push as &Push<'_>),
                 work,

@@ -182,6 +182,8 @@ impl Forces {
 pub(crate) struct Around<'a> {
     /// Acceleration of gravity (m/s²).
     pub(crate) gravity: DVec3,
+    /// Damping in proportion to masses (1/s).
+    pub(crate) mass_damping: f64,
     /// x, y and z of the force from outside on each node (N); empty for none.
     pub(crate) forces: [&'a [f64]; 3],
     /// What makes these forces anew for each pass, if they change. Only positions of the nodes with loads are read.

@@ -185,7 +185,7 @@ impl PartStepper {
         let is_held = around.grips.is_some_and(|grips| (grips.hold)(&self.nodes));
         Passes {
             scheme,
-            is_damped: self.stepper.is_damped(),
+            is_damped: self.stepper.is_damped() || around.mass_damping > 0.0,
             is_interrupted: is_held || around.meeting.is_some() || around.push.is_some(),
             first: steps.start,
             steps: steps.end - steps.start,

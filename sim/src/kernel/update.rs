@@ -63,6 +63,8 @@ pub(crate) struct NodeUpdate<'a, L> {
     step: L,
     half: L,
     gravity: [L; 3],
+    /// Damping in proportion to masses (1/s), if there is any.
+    mass_damping: Option<L>,
     /// The squares of the speed limits at the end of the previous step and in the present one.
     limits: [L; 2],
     number: u64,
@@ -90,6 +92,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
             step: L::splat(step),
             half: L::splat(0.5 * step),
             gravity: each!(3, axis => L::splat(around.gravity[axis])),
+            mass_damping: (around.mass_damping > 0.0).then(|| L::splat(-around.mass_damping)),
             limits: each!(2, at => {
                 let limit = (around.speed_limit)(limits[at]);
                 L::splat(limit * limit)
@@ -137,7 +140,10 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
         let zero = L::splat(0.0);
         let alive = zero.lt(inverse_mass);
         // The acceleration (m/s²).
-        let now = each!(3, axis => force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
+        let mut now = each!(3, axis => force[axis].mul_add(inverse_mass, self.gravity[axis]).select(alive, zero));
+        if let Some(damping) = self.mass_damping {
+            now = each!(3, axis => damping.mul_add(nodes.velocity[axis], now[axis]));
+        }
         let mut lost = 0;
         match self.stage {
             Stage::SemiImplicitEuler => {

@@ -230,6 +230,7 @@ fn at_start(around: &Surroundings) -> Surroundings {
     });
     Surroundings {
         gravity: around.gravity,
+        mass_damping: 0.0,
         obstacles: around.obstacles.iter().map(obstacle).collect(),
         contacts,
         grips: around.grips.iter().filter(|grip| grip.holds(0.0)).map(grip).collect(),

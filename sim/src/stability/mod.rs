@@ -41,16 +41,10 @@ impl Stability {
     /// frame of film or video, as M. Macklin et al., Small Steps in Physics Simulation (2019), do.
     pub const PROJECTED: f64 = 1.0 / 1200.0;
 
-    /// Predicts the largest stable step for a model on a body. Nodes that a grip holds from the start to the end at a time (s) do not
-    /// vibrate. All others count as free, because free nodes only raise frequencies.
-    pub fn of(
-        body: &Arc<Body>,
-        model: &dyn ElasticModel,
-        integrator: Integrator,
-        grips: &[Grip],
-        duration: f64,
-    ) -> Self {
-        let certain = Self::certain(body, model, integrator);
+    /// Predicts the largest stable step for a model on a body. Nodes that a grip holds from the start to the end do not vibrate. All others
+    /// count as free, because free nodes only raise frequencies.
+    pub fn of(body: &Arc<Body>, model: &dyn ElasticModel, integrator: Integrator, restraint: Restraint<'_>) -> Self {
+        let certain = Self::certain(body, model, integrator, restraint.mass_damping);
         let is_implicit = matches!(integrator, Integrator::BackwardEuler | Integrator::DormandPrince);
         if is_implicit || certain == Some(f64::INFINITY) {
             return Self { largest: f64::INFINITY, stretched: None };
@@ -59,10 +53,12 @@ impl Stability {
         if let Some(step) = certain.filter(|&step| corners > MOST_CORNERS && step > 0.0) {
             return Self { largest: step, stretched: None };
         }
-        let is_free = free(body, grips, duration);
+        let is_free = restraint.free(body);
         let has_springs = !model.springs().is_empty();
-        let stretched = has_springs.then(|| stretched(body, model, &is_free).largest_step(integrator));
-        Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
+        let braked = |mode: Mode| mode.damped_more(restraint.mass_damping);
+        let stretched = has_springs.then(|| braked(stretched(body, model, &is_free)).largest_step(integrator));
+        let linear = Linear::new(body, model, is_free, restraint.mass_damping);
+        Self { largest: linear.largest_step(integrator).min(restraint.largest_step(integrator)), stretched }
     }
 
     /// Whether a step (s) is below the largest stable one at rest for each body of a run, told by fewer products than [`Self::of_each`] takes.
@@ -71,8 +67,8 @@ impl Stability {
         bodies: &Assembly,
         models: &[Arc<dyn ElasticModel>],
         integrator: Integrator,
-        grips: &[Grip],
-        (duration, step): (f64, f64),
+        restraint: Restraint<'_>,
+        step: f64,
     ) -> bool {
         /// So many products find the largest eigenvalue to some tenths, so that a step is below the limit up to this share of it.
         const FEW: usize = 12;
@@ -80,10 +76,11 @@ impl Stability {
         let is_implicit = matches!(integrator, Integrator::BackwardEuler | Integrator::DormandPrince);
         let mut parts = bodies.bodies().iter().zip(models).enumerate();
         parts.all(|(at, (body, model))| {
-            let certain = Self::certain(body, &**model, integrator);
+            let certain = Self::certain(body, &**model, integrator, restraint.mass_damping);
             let rough = || {
-                let is_free = free(body, &of_body(bodies, at, grips), duration);
-                FAR * Linear { most: FEW, ..Linear::new(body, &**model, is_free) }.rough_step(integrator)
+                let is_free = Restraint { grips: &of_body(bodies, at, restraint.grips), ..restraint }.free(body);
+                let linear = Linear::new(body, &**model, is_free, restraint.mass_damping);
+                FAR * Linear { most: FEW, ..linear }.rough_step(integrator).min(restraint.largest_step(integrator))
             };
             is_implicit || step <= certain.unwrap_or_else(rough)
         })
@@ -95,12 +92,12 @@ impl Stability {
         bodies: &Assembly,
         models: &[Arc<dyn ElasticModel>],
         integrator: Integrator,
-        grips: &[Grip],
-        duration: f64,
+        restraint: Restraint<'_>,
     ) -> Vec<Self> {
         let parts = bodies.bodies().iter().zip(models).enumerate();
         let of = |(at, (body, model)): (usize, (&Arc<Body>, &Arc<dyn ElasticModel>))| {
-            Self::of(body, &**model, integrator, &of_body(bodies, at, grips), duration)
+            let own = Restraint { grips: &of_body(bodies, at, restraint.grips), ..restraint };
+            Self::of(body, &**model, integrator, own)
         };
         parts.map(of).collect()
     }
@@ -113,10 +110,10 @@ impl Stability {
         }
     }
 
-    /// A step (s) that is stable for certain, without computing eigenvalues: 0 if none is known, `None` for models that do not
+    /// A step (s) that is stable for certain with damping of masses (1/s), without computing eigenvalues: 0 if none is known, `None` for models that do not
     /// say how stiff they are. Infinite for a model that moves its nodes itself.
-    pub fn certain(body: &Body, model: &dyn ElasticModel, integrator: Integrator) -> Option<f64> {
-        Some(model.bound(body)?.certain_step(integrator))
+    pub fn certain(body: &Body, model: &dyn ElasticModel, integrator: Integrator, mass_damping: f64) -> Option<f64> {
+        Some(model.bound(body)?.damped_more(mass_damping).certain_step(integrator))
     }
 }
 
@@ -130,12 +127,30 @@ fn of_body(bodies: &Assembly, body: usize, grips: &[Grip]) -> Vec<Grip> {
     grips.iter().map(|grip| Grip { nodes: nodes(grip), ..grip.clone() }).collect()
 }
 
-/// Whether each node of a body vibrates: no grip holds it from the start to the end at a time (s).
-fn free(body: &Body, grips: &[Grip], duration: f64) -> Vec<bool> {
-    let mut is_free = vec![true; body.len()];
-    let holding = grips.iter().filter(|grip| grip.from <= 0.0 && grip.until >= duration);
-    holding.flat_map(|grip| &grip.nodes).for_each(|&node| is_free[node as usize] = false);
-    is_free
+/// What keeps nodes of a run from vibrating.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Restraint<'a> {
+    /// Its grips.
+    pub grips: &'a [Grip],
+    /// The end of the run (s).
+    pub duration: f64,
+    /// [`Surroundings::mass_damping`](crate::Surroundings::mass_damping) (1/s).
+    pub mass_damping: f64,
+}
+
+impl Restraint<'_> {
+    /// The largest stable step (s) of a mode without stiffness, which some methods allow less than an oscillation.
+    fn largest_step(&self, integrator: Integrator) -> f64 {
+        Mode::default().damped_more(self.mass_damping).largest_step(integrator)
+    }
+
+    /// Whether each node of a body vibrates: no grip holds it from the start to the end.
+    fn free(&self, body: &Body) -> Vec<bool> {
+        let mut is_free = vec![true; body.len()];
+        let holding = self.grips.iter().filter(|grip| grip.from <= 0.0 && grip.until >= self.duration);
+        holding.flat_map(|grip| &grip.nodes).for_each(|&node| is_free[node as usize] = false);
+        is_free
+    }
 }
 
 /// Elements and springs of bodies up to this size are looked at, by their corners and ends: a prediction takes some seconds on one
@@ -196,6 +211,8 @@ struct Linear {
     /// `1/√m` of each node (1/√kg).
     scale: Vec<f64>,
     is_free: Vec<bool>,
+    /// Damping of masses, the same of all modes (1/s).
+    mass_damping: f64,
     /// The greatest displacement (m) in a difference of forces.
     small: f64,
     /// At rest (N).
@@ -205,7 +222,7 @@ struct Linear {
 }
 
 impl Linear {
-    fn new(body: &Arc<Body>, model: &dyn ElasticModel, is_free: Vec<bool>) -> Self {
+    fn new(body: &Arc<Body>, model: &dyn ElasticModel, is_free: Vec<bool>, mass_damping: f64) -> Self {
         /// As a share of the smallest element: forces are linear to about this share, and round-off is far smaller.
         const SMALL: f64 = 1e-6;
         let size = |nodes: &[u32]| {
@@ -219,6 +236,7 @@ impl Linear {
             memory,
             scale: body.mass.iter().map(|mass| 1.0 / mass.sqrt()).collect(),
             is_free,
+            mass_damping,
             small: SMALL * smallest,
             at_rest: Vec::new(),
             most: most_products(body.elements.indices().len().max(2 * model.springs().len())),
@@ -270,19 +288,20 @@ impl Linear {
         let (value, vector) = lanczos::largest(&start, self.most, is_damped, |from, to| {
             self.product(weights, from, to, &mut scratch);
         });
-        let Some(vector) = vector else { return Mode { stiffness: value / weights[0], damping: 0.0 } };
+        let Some(vector) = vector else { return Mode { stiffness: value / weights[0], damping: self.mass_damping } };
         let mut image = vec![DVec3::ZERO; vector.len()];
         let mut quotient = |weights: [f64; 2]| {
             self.product(weights, &vector, &mut image, &mut scratch);
             lanczos::dot(&vector, &image).max(0.0)
         };
-        Mode { stiffness: quotient([1.0, 0.0]), damping: quotient([0.0, 1.0]) }
+        let elastic = Mode { stiffness: quotient([1.0, 0.0]), damping: quotient([0.0, 1.0]) };
+        elastic.damped_more(self.mass_damping)
     }
 
     /// The largest step that is stable for a mode with the largest stiffness and the largest damping.
     fn rough_step(&self, integrator: Integrator) -> f64 {
         let stiffness = self.top([1.0, 0.0]).stiffness;
-        let damping = if self.forces.is_damped() { self.top([0.0, 1.0]).damping } else { 0.0 };
+        let damping = if self.forces.is_damped() { self.top([0.0, 1.0]).damping } else { self.mass_damping };
         Mode { stiffness, damping }.largest_step(integrator)
     }
 
@@ -296,7 +315,7 @@ impl Linear {
         const MOST_SEARCHES: usize = 5;
         if !self.forces.is_damped() {
             return match integrator {
-                Integrator::ExplicitEuler => 0.0,
+                Integrator::ExplicitEuler if self.mass_damping == 0.0 => 0.0,
                 _ => self.top([1.0, 0.0]).largest_step(integrator),
             };
         }

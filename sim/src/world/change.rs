@@ -24,6 +24,14 @@ impl World {
         self.change(|around| around.gravity = gravity)
     }
 
+    /// Sets the damping in proportion to masses (1/s) from now on.
+    ///
+    /// # Errors
+    /// A number below 0, or one that is not finite.
+    pub fn set_mass_damping(&mut self, damping: f64) -> Result<(), WrongSurroundings> {
+        self.change(|around| around.mass_damping = damping)
+    }
+
     /// Sets the constant force on each node (N) from now on; none for an empty list. They cost a fast step little.
     ///
     /// # Errors

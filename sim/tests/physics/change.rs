@@ -28,7 +28,7 @@ fn worlds() -> Vec<(String, World)> {
     let mut all = Vec::new();
     for body in bodies() {
         for model in models(&body) {
-            for integrator in INTEGRATORS.into_iter().filter(|one| one.refusal(&*model, &body).is_none()) {
+            for integrator in INTEGRATORS.into_iter().filter(|one| one.refusal(&*model, &body, 0.0).is_none()) {
                 for kernel in [Kernel::Fast, Kernel::Reference] {
                     let stepping = Stepping { kernel, ..Stepping::new(integrator, STEP) };
                     let start = State::at_rest(body.rest().to_vec());

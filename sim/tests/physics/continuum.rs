@@ -7,7 +7,7 @@ use localshape_sim::model::continuum::Parameters;
 use localshape_sim::model::metric::Metric;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, Misfit, ModelParameters, corotational, linear, neo_hookean};
-use localshape_sim::stability::Stability;
+use localshape_sim::stability::{Restraint, Stability};
 use localshape_sim::{Body, Dimension, IndexLists, Integrator, Material, Solids, State, Status};
 use std::sync::Arc;
 
@@ -317,7 +317,7 @@ fn predicted_steps_are_the_largest_stable_ones() {
                 continue;
             }
             for model in all(&body, poisson, damping) {
-                let largest = Stability::of(&body, model.as_ref(), integrator, &[], 1.0).largest;
+                let largest = Stability::of(&body, model.as_ref(), integrator, Restraint::default()).largest;
                 let grows = |share: f64| {
                     let mut noise = Noise(12);
                     let flat = |v: DVec3| if body.dimension() == Dimension::Plane { v.with_z(0.0) } else { v };

@@ -9,7 +9,7 @@ use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::volume_springs::VolumeSprings;
 use localshape_sim::model::{ElasticModel, ModelParameters};
-use localshape_sim::stability::Stability;
+use localshape_sim::stability::{Restraint, Stability};
 use localshape_sim::{
     Body, Crew, Dimension, IndexLists, Integrator, Kernel, Springs, State, Stepping, Surroundings, World,
 };
@@ -226,7 +226,8 @@ fn slivers_do_not_shorten_the_predicted_step() {
         for body in slivers(part) {
             for (model, of_cube) in models(&body).iter().zip(models(&cube)) {
                 for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet, Integrator::RungeKutta] {
-                    let limit = |body, model: &dyn ElasticModel| Stability::of(body, model, integrator, &[], 1.0);
+                    let limit =
+                        |body, model: &dyn ElasticModel| Stability::of(body, model, integrator, Restraint::default());
                     let (found, least) = (limit(&body, &**model), limit(&cube, &*of_cube));
                     // Of the search for eigenvalues.
                     let error = 1e-3;
@@ -237,7 +238,8 @@ fn slivers_do_not_shorten_the_predicted_step() {
             }
             let full = filled(4, |_| 1.0);
             let shape = shape_based(1e4, 3.0);
-            let certain = |body: &Body| Stability::certain(body, &shape, Integrator::VelocityVerlet).expect("a bound");
+            let certain =
+                |body: &Body| Stability::certain(body, &shape, Integrator::VelocityVerlet, 0.0).expect("a bound");
             assert!(certain(&body) > certain(&full) * (1.0 - 1e-12));
         }
     }
@@ -250,7 +252,7 @@ fn slivers_do_not_shorten_the_real_step() {
     for body in slivers(1e-6) {
         for (model, of_cube) in models(&body).iter().zip(models(&cube)) {
             let integrator = Integrator::SemiImplicitEuler;
-            let limit = Stability::of(&cube, &*of_cube, integrator, &[], 1.0);
+            let limit = Stability::of(&cube, &*of_cube, integrator, Restraint::default());
             let step = 0.95 * limit.stretched.unwrap_or(limit.largest).min(limit.largest);
             let mut noise = Noise(4);
             // A small deformation: the limit is about the vicinity of rest.
@@ -328,8 +330,8 @@ fn relative_stiffness_multiplies_that_of_the_model() {
         }
         for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet, Integrator::RungeKutta] {
             let [a, b] = pairs.map(|(body, model)| {
-                let Stability { largest, stretched, .. } = Stability::of(body, model, integrator, &[], 1.0);
-                [largest, stretched.unwrap_or(largest), Stability::certain(body, model, integrator).unwrap_or(0.0)]
+                let Stability { largest, stretched, .. } = Stability::of(body, model, integrator, Restraint::default());
+                [largest, stretched.unwrap_or(largest), Stability::certain(body, model, integrator, 0.0).unwrap_or(0.0)]
             });
             a.iter().zip(&b).for_each(|(a, b)| assert!((a - b).abs() <= 1e-12 * a, "{soft:?} {integrator:?}: {a} {b}"));
         }
@@ -351,10 +353,10 @@ fn the_stiffest_element_bounds_the_step() {
     ] {
         for (model, of_cube) in models(&body).iter().zip(models(&cube)) {
             let integrator = Integrator::SemiImplicitEuler;
-            let limit = |body, model: &dyn ElasticModel| Stability::of(body, model, integrator, &[], 1.0);
+            let limit = |body, model: &dyn ElasticModel| Stability::of(body, model, integrator, Restraint::default());
             let (found, least) = (limit(&body, &**model), limit(&cube, &*of_cube));
             assert!(found.largest > least.largest * (1.0 - 1e-3), "{model:?}: {found:?} {least:?}");
-            let certain = Stability::certain(&body, &**model, integrator).unwrap_or(0.0);
+            let certain = Stability::certain(&body, &**model, integrator, 0.0).unwrap_or(0.0);
             assert!(certain <= found.largest * (1.0 + 1e-3), "{model:?}: {found:?} {certain}");
             let step = 0.95 * found.stretched.unwrap_or(found.largest).min(found.largest);
             let mut noise = Noise(4);

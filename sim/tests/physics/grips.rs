@@ -110,7 +110,7 @@ fn nodes_that_are_held_have_no_speed_of_their_own() {
     // Other models a thousand times as stiff as their step bears.
     let cases = of_stiffness(1e6 * STIFFNESS, &body, 0.0);
     for model in cases.iter().map(|case| &*case.model).chain([&stiff as &dyn ElasticModel]) {
-        let takes = |integrator: &Integrator| integrator.refusal(model, &body).is_none();
+        let takes = |integrator: &Integrator| integrator.refusal(model, &body, 0.0).is_none();
         for (integrator, kernel) in INTEGRATORS
             .into_iter()
             .filter(takes)

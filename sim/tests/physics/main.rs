@@ -25,6 +25,7 @@ mod implicit;
 mod integrators;
 mod loads;
 #[cfg(feature = "scene")]
+mod mass_damping;
 mod masses;
 #[cfg(feature = "scene")]
 mod material;

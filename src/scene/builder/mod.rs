@@ -28,7 +28,8 @@ pub use run::RunBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, Positive, ProbeFile, RunFile, SceneFile, StartFile, StepFile, TimeFile,
+    Coordinates, EndFile, GrabFile, HoldFile, MassDamping, MotionPath, Positive, ProbeFile, RunFile, SceneFile,
+    StartFile, StepFile, TimeFile,
 };
 use super::resolve::Typed;
 use super::schema::SCHEMA_OF_CODE;
@@ -86,6 +87,7 @@ impl Scene {
         let time = TimeFile {
             duration: 1.0,
             start: None,
+            until: None,
             step: None,
             tolerance: None,
             frames_per_second: 60.0,
@@ -95,6 +97,7 @@ impl Scene {
         let file = SceneFile {
             title: Some(name.into()),
             gravity: None,
+            mass_damping: None,
             time: None,
             body: vec![Some(body.0)],
             run: Vec::new(),
@@ -122,10 +125,14 @@ impl SceneBuilder {
     setters! {
         /// Acceleration of gravity (m/s²).
         gravity(acceleration: impl Into<Coordinates>) file.gravity = Some(acceleration.into());
+        /// Damping in proportion to masses (1/s).
+        mass_damping(rate: f64) file.mass_damping = Some(MassDamping::Rate(rate));
         /// Simulated time (s).
         duration(seconds: f64) time.duration = seconds;
         /// Starts each run where its bodies are at rest.
         at_rest() time.start = Some(StartFile::Equilibrium);
+        /// Ends at the first frame at which all runs are at rest, if that is before the end.
+        until_rest() time.until = Some(EndFile::Rest);
         /// Time step ΔT (s) of runs without a step of their own.
         step(seconds: f64) time.step = Some(StepFile::Seconds(seconds));
         /// The number of steps in the shortest period T = 2π√(m/k) of all runs, 50 by default, for runs without a step

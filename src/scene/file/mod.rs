@@ -22,12 +22,13 @@ pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, ProbeF
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 pub(in crate::scene) use run::{ModelFile, RunFile, RunSource, StatesFile};
-pub(in crate::scene) use time::{StartFile, StepFile, TimeFile};
+pub(in crate::scene) use time::{EndFile, StartFile, StepFile, TimeFile};
 
 use crate::look::{TypedView, View};
 pub use crate::reading::coordinates::Coordinates;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// The largest accepted magnitude of a number (SI). Squares and volumes of larger ones leave the range of double
 /// precision.
@@ -43,6 +44,9 @@ pub(in crate::scene) struct SceneFile {
     pub(in crate::scene) title: Option<String>,
     /// Acceleration of gravity (m/s²), such as `[0, -9.8, 0]`. Default: none.
     pub(in crate::scene) gravity: Option<Coordinates>,
+    /// Damping in proportion to masses: Rayleigh's α (1/s), or a table with the damping ratio of an oscillation. The force on each node is `−α m V`,
+    /// beside the damping of models. It brakes all motion, also that of a body as a whole. Default: none.
+    pub(in crate::scene) mass_damping: Option<MassDamping>,
     /// Duration, time step and frame rate.
     #[schemars(with = "TimeFile")]
     pub(in crate::scene) time: Option<TimeFile>,
@@ -85,3 +89,35 @@ pub(in crate::scene) struct SceneFile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub(in crate::scene) struct Positive(#[schemars(extend("exclusiveMinimum" = 0))] pub(in crate::scene) f64);
+
+/// Damping in proportion to masses as typed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(in crate::scene) enum MassDamping {
+    /// `α` (1/s).
+    Rate(#[schemars(range(min = 0.0))] f64),
+    /// The damping ratio of an oscillation.
+    Ratio(DampingRatio),
+}
+
+/// The damping ratio of an oscillation: `α = 4π ζ f`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct DampingRatio {
+    /// The damping ratio `ζ`. With 1 the oscillation just vanishes.
+    #[schemars(range(min = 0.0))]
+    pub(in crate::scene) ratio: f64,
+    /// The frequency `f` of the oscillation without damping (1/s).
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) frequency: f64,
+}
+
+impl MassDamping {
+    /// `α` (1/s).
+    pub(in crate::scene) fn rate(self) -> f64 {
+        match self {
+            Self::Rate(rate) => rate,
+            Self::Ratio(DampingRatio { ratio, frequency }) => 4.0 * PI * ratio * frequency,
+        }
+    }
+}

@@ -10,11 +10,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct TimeFile {
-    /// Simulated time (s); 0 shows only the start.
+    /// Simulated time (s); 0 shows only the start. With `until` it is the longest.
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
     /// Where runs start. Default: where their bodies are placed.
     pub(in crate::scene) start: Option<StartFile>,
+    /// The end, if it comes before the end of `duration`. The scene is simulated when it is read, to know when that is.
+    pub(in crate::scene) until: Option<EndFile>,
     /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
     /// the mass of the lightest node and the largest stiffness of all bodies and runs; of `volume-springs` that of a spring or that of
     /// an element against changes of its volume. `"auto"` takes equal steps between two
@@ -49,6 +51,15 @@ pub(in crate::scene) enum StartFile {
     /// At rest: each run starts where the forces of its model balance gravity, the loads at the start, and what holds or meets its bodies.
     /// Obstacles do not move before the start. Velocities are those of the bodies. `localshape check` tells what is left of the forces.
     Equilibrium,
+}
+
+/// An end other than that of the duration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::scene) enum EndFile {
+    /// At rest: the first frame at which nothing outside moves any more and all runs are at rest. Since the frame before, the kinetic energy is at most 1e-6 of
+    /// the greatest so far, and the forces that are left 1e-3 of gravity and loads. `localshape check` tells when that is.
+    Rest,
 }
 
 /// A time step as typed.

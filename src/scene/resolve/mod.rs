@@ -24,6 +24,7 @@ mod rest;
 mod runs;
 mod steps;
 mod table;
+mod until;
 
 use super::digest::{FileDigests, digest};
 use super::file::{BodyFile, Positive, SceneFile, TimeFile};
@@ -114,6 +115,7 @@ impl<'a> Typed<'a> {
             file: None,
             digest: if has_own_models { String::new() } else { digest(file, files) },
             gravity: physics.gravity?,
+            mass_damping: file.mass_damping(),
             duration: time.duration,
             frames_per_second: time.frames_per_second,
             every: time.every.map(|every| every.0),
@@ -132,6 +134,7 @@ impl<'a> Typed<'a> {
             contact::check_starts(&scene, contacts, self, report);
         }
         doubts::warn(&scene, self, report);
+        until::end(self, &mut scene, report);
         Some(Scene { warnings: report.warnings(), ..scene })
     }
 

@@ -19,7 +19,7 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
         return;
     };
     let find = |run: &Run| {
-        let surroundings = run.surroundings(*gravity, obstacles, contacts.as_ref());
+        let surroundings = run.surroundings((*gravity, 0.0), obstacles, contacts.as_ref());
         let parts: Vec<_> = run.bodies.bodies().iter().cloned().zip(run.models.iter().map(|model| &**model)).collect();
         equilibrium(&parts, &run.initial, &surroundings, run.step, Crew::default())
     };

@@ -146,7 +146,8 @@ impl Resolved<'_> {
     fn run(self, at: usize, run: &RunFile, parts: Parts, steps: &Steps<'_>, report: &mut Collector<'_>) -> Option<Run> {
         let integrator = steps.integrator(run);
         let (step, tolerance) = steps.of(at, run, parts.recording.as_deref(), report)?;
-        let refusals = parts.iter().map(|(model, body)| integrator.refusal(model, body)).enumerate();
+        let refusals =
+            parts.iter().map(|(model, body)| integrator.refusal(model, body, steps.mass_damping)).enumerate();
         if let Some((body, reason)) = refusals.into_iter().find_map(|(body, reason)| Some((body, reason?))) {
             let name = words::quoted(&typed(&integrator));
             // The integrator of the scene suits other runs.
@@ -180,6 +181,7 @@ impl Resolved<'_> {
             bodies,
             initial,
             rest: None,
+            comes_to_rest: None,
             placed: None,
             models,
             recording,
@@ -228,7 +230,7 @@ pub(super) fn resolve(
     let runs = &scene.file.run;
     // T depends on all models: without one of them, steps would be reported wrongly.
     let (parts, own) = resolved.parts(runs, recordings, report)?;
-    let steps = Steps::new(runs, scene.file.time.as_ref()?, &parts, report);
+    let steps = Steps::new(scene.file, &parts, report)?;
     let run =
         |(at, (run, parts)): (usize, (&Option<RunFile>, Parts))| resolved.run(at, run.as_ref()?, parts, &steps, report);
     let runs = runs.iter().zip(parts).enumerate().map(run).collect::<Option<_>>()?;

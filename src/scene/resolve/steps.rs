@@ -5,10 +5,10 @@ use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words;
 use crate::scene::Recorded;
-use crate::scene::file::{RunFile, StepFile, TimeFile};
+use crate::scene::file::{RunFile, SceneFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
 use crate::sim::Integrator;
-use crate::sim::stability::Stability;
+use crate::sim::stability::{Restraint, Stability};
 
 /// The most steps of a run. Beyond, double precision cannot distinguish the times of two steps.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
@@ -20,6 +20,8 @@ const STEPS_OF_FRAME: f64 = 1024.0;
 pub(super) struct Steps<'a> {
     pub(super) time: &'a TimeFile,
     runs: &'a [Option<RunFile>],
+    /// Damping in proportion to masses (1/s).
+    pub(super) mass_damping: f64,
     /// The cycle T of all runs (s).
     cycle: f64,
     /// The largest step for `step = "auto"` of each run (s), and the run that limits it.
@@ -28,18 +30,14 @@ pub(super) struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// The steps of runs with these parts.
-    pub(super) fn new(
-        runs: &'a [Option<RunFile>],
-        time: &'a TimeFile,
-        parts: &[Parts],
-        report: &mut Collector<'_>,
-    ) -> Self {
+    pub(super) fn new(file: &'a SceneFile, parts: &[Parts], report: &mut Collector<'_>) -> Option<Self> {
+        let (runs, time, mass_damping) = (&file.run, file.time.as_ref()?, file.mass_damping());
         let periods =
             parts.iter().flat_map(Parts::iter).map(|(model, body)| model.properties(body).shortest_period(body));
         let cycle = periods.fold(f64::INFINITY, f64::min);
-        let own = own_limits(runs, time, parts);
+        let own = own_limits(runs, time, mass_damping, parts);
         warn_of_held_steps(runs, time, parts, &own, report);
-        Self { time, runs, cycle, limits: limits(own, &sharing(runs, time)) }
+        Some(Self { time, runs, mass_damping, cycle, limits: limits(own, &sharing(runs, time)) })
     }
 
     /// The integrator of a run.
@@ -145,7 +143,7 @@ fn sharing(runs: &[Option<RunFile>], time: &TimeFile) -> Vec<usize> {
 
 /// The largest step (s) for each run with `step = "auto"`, infinite for others: the largest stable one, or for a model that moves its
 /// nodes itself the one that is taken.
-fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<f64> {
+fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, mass_damping: f64, parts: &[Parts]) -> Vec<f64> {
     let sharing = sharing(runs, time);
     let limit = |(at, (run, parts)): (usize, (&Option<RunFile>, &Parts))| {
         let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || sharing.contains(&at)) else {
@@ -153,7 +151,8 @@ fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec
         };
         let integrator = run.integrator.unwrap_or(time.integrator);
         let Parts { bodies, models, grips, .. } = parts;
-        let each = Stability::of_each(bodies, models, integrator, grips, time.duration);
+        let each =
+            Stability::of_each(bodies, models, integrator, Restraint { grips, duration: time.duration, mass_damping });
         let largest = Stability::of_all(&each).largest;
         if parts.is_projected() { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
     };

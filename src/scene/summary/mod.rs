@@ -2,7 +2,7 @@
 
 mod words;
 
-use super::{Rest, Run, Scene, SceneBody};
+use super::{AtRest, Rest, Run, Scene, SceneBody};
 use crate::reading::captions::{self, description, typed};
 use crate::reading::words::count;
 use crate::sim::geometry::bounds;
@@ -24,6 +24,8 @@ pub struct SceneSummary {
     pub bodies: Vec<BodySummary>,
     /// Acceleration of gravity (m/s²): three coordinates in space, two in the plane.
     pub gravity: Vec<f64>,
+    /// Damping in proportion to masses (1/s).
+    pub mass_damping: f64,
     /// Simulated time (s).
     pub duration: f64,
     /// Number of frames, the first and the last included.
@@ -101,6 +103,9 @@ pub struct RunSummary {
     /// How near to rest it starts. Absent if it does not start at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<Rest>,
+    /// When it comes to rest. Absent if the scene does not end then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub comes_to_rest: Option<AtRest>,
     /// The largest stable step (s), at rest; 0 if none is stable. Absent if steps have no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_step: Option<f64>,
@@ -170,6 +175,7 @@ impl Scene {
                 tolerance: run.tolerance,
                 steps: self.frame_step(at, last),
                 rest: run.rest,
+                comes_to_rest: run.comes_to_rest,
                 largest_step: largest.is_finite().then_some(largest),
                 limited_by: limiting.map(str::to_owned),
                 largest_stretched_step: stretched.filter(|limit| limit.is_finite()),
@@ -182,6 +188,7 @@ impl Scene {
             digest: self.digest.clone(),
             bodies: self.bodies.iter().map(BodySummary::new).collect(),
             gravity: coordinates(self.gravity),
+            mass_damping: self.mass_damping,
             duration: self.duration,
             frames: last.saturating_add(1),
             frames_per_second: self.frames_per_second,

@@ -1,9 +1,9 @@
 //! The contents of a scene in words.
 
 use super::{PartSummary, RunSummary, SceneSummary, coordinates};
-use crate::reading::captions::typed;
+use crate::reading::captions::{quantity, typed};
 use crate::reading::words::{count, ends, list, several, short};
-use crate::scene::{Probe, Region, Rest, Run, Scene, SceneBody};
+use crate::scene::{AtRest, Probe, Region, Rest, Run, Scene, SceneBody};
 use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape};
 use glam::DVec3;
 use std::fmt;
@@ -247,6 +247,9 @@ impl fmt::Display for SceneSummary {
             body.regions.iter().try_for_each(|region| line("region", region))?;
         }
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
+        if self.mass_damping > 0.0 {
+            line("damping", &format!("of masses, α = {}/s", short(self.mass_damping)))?;
+        }
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         line("time", &format!("{duration} s, {} at {rate} per second", several(self.frames, "frame")))?;
         if self.cycle.is_finite() {
@@ -277,6 +280,14 @@ impl fmt::Display for SceneSummary {
                 line(
                     "",
                     &format!("starts at rest: {residual:.0e} of the load is left after {evaluations} evaluations"),
+                )?;
+            }
+            if let Some(AtRest { frame, kinetic_energy, residual }) = run.comes_to_rest {
+                let time = short(frame as f64 / self.frames_per_second);
+                let energy = quantity(kinetic_energy, "J");
+                line(
+                    "",
+                    &format!("at rest from {time} s on: {energy} of motion and {residual:.0e} of the load are left"),
                 )?;
             }
             if run.tolerance.is_none() {

@@ -10,7 +10,7 @@ use crate::table::{Cell, Table, figure, or_dash};
 use crate::turns::{kind_of_time, machine, seconds, take_turns};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
-use localshape::sim::stability::Stability;
+use localshape::sim::stability::{Restraint, Stability};
 use localshape::sim::{Grip, Integrator, Material, Motion, State, Stepping, Surroundings, World};
 use std::sync::Arc;
 
@@ -165,7 +165,9 @@ impl Cantilever {
         }
         let nodes = bar.held().iter().map(|&node| node as u32).collect();
         let held = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still };
-        let stability = Stability::of(&bar.body, made.as_ref(), INTEGRATOR, std::slice::from_ref(&held), f64::INFINITY);
+        let restraint =
+            Restraint { grips: std::slice::from_ref(&held), duration: f64::INFINITY, ..Restraint::default() };
+        let stability = Stability::of(&bar.body, made.as_ref(), INTEGRATOR, restraint);
         let (step, deflection) = (Stability::SHARE * stability.largest, bar.tip(&position).x / bar.length);
         let mut beam = Self { bar, model: made, held, step, deflection, softer: Vec::new() };
         if beam.model.projection(&beam.bar.body).is_some() {

@@ -13,7 +13,7 @@ use crate::study::{Findings, Study, Watch, built_in};
 use localshape::Scene;
 use localshape::scene::{Run, description};
 use localshape::sim::model::{ElasticModel, ModelParameters};
-use localshape::sim::stability::Stability as Limit;
+use localshape::sim::stability::{Restraint, Stability as Limit};
 use localshape::sim::{Diagnostic, Status};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -171,7 +171,8 @@ impl Axes {
         let (model, body) = (one.models[0].as_ref(), one.body());
         let properties = model.properties(body);
         let cycle = properties.shortest_period(body);
-        let predicted = Limit::of(body, model, one.integrator, &one.grips, scene.duration);
+        let restraint = Restraint { grips: &one.grips, duration: scene.duration, mass_damping: scene.mass_damping };
+        let predicted = Limit::of(body, model, one.integrator, restraint);
         let limit = (predicted.largest > 0.0 && predicted.largest.is_finite()).then_some(predicted.largest);
         Some(Self {
             run,

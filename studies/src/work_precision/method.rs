@@ -104,7 +104,7 @@ impl Method {
 
     /// Why it cannot advance a model; `None` if it can.
     pub(crate) fn refusal(self, subject: &Subject, model: &dyn ElasticModel) -> Option<&'static str> {
-        self.integrator().0.refusal(model, subject.body())
+        self.integrator().0.refusal(model, subject.body(), 0.0)
     }
 
     /// Whether it has vectorised steps for a model.

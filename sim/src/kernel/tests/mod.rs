@@ -159,6 +159,7 @@ pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
 
 /// Gravity alone, and no speed limit.
 pub(super) const FREE: Around<'_> = Around {
+    mass_damping: 0.0,
     gravity: GRAVITY,
     forces: [&[]; 3],
     push: None,

@@ -1,0 +1,40 @@
+//! The simulation of a run.
+
+use super::Scene;
+use crate::sim::{Integrator, Moment, Stepping, World};
+use std::sync::Arc;
+
+impl Scene {
+    /// The world of one run, at its start.
+    ///
+    /// # Panics
+    /// If the scene has no such run.
+    pub fn world(&self, run: usize) -> World {
+        let run = &self.runs[run];
+        let surroundings = run.surroundings((self.gravity, self.mass_damping), &self.obstacles, self.contacts.as_ref());
+        let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
+        let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
+        let bodies = run.bodies.bodies();
+        let mut world = match &run.recording {
+            Some(recording) => {
+                let player = Box::new(recording.player(run.step));
+                World::recorded(bodies, run.initial.clone(), self.gravity, run.step, player)
+            }
+            None => {
+                let models = run.models.iter().map(|model| &**model);
+                let parts: Vec<_> = bodies.iter().map(Arc::clone).zip(models).collect();
+                World::of_parts(&parts, run.initial.clone(), surroundings, stepping)
+            }
+        };
+        world.show(self.view.colour.map(|scale| scale.field));
+        if self.keeps_forces() {
+            self.keep_contact(&mut world);
+        }
+        world
+    }
+
+    /// Keeps the forces of contact, over the intervals between rows of `diagnostics.csv`, or else between frames.
+    pub(crate) fn keep_contact(&self, world: &mut World) {
+        world.keep_reactions(self.every.map_or(self.moment(1), Moment::at));
+    }
+}
