@@ -83,7 +83,7 @@ pub use integrate::{Integrator, Unsolved};
 pub use kernel::peak;
 pub use lanes::vectors;
 pub use lists::IndexLists;
-pub use load::{Course, Load, Loading, Pull, for_each_area};
+pub use load::{Course, Load, Loading, Pull, Turning, for_each_area};
 pub use material::Material;
 pub use motion::{Ease, Key, Motion, Offset, Path, Pose};
 pub use placement::Placement;

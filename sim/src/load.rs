@@ -115,6 +115,19 @@ pub enum Pull {
     Torque(DVec3, Vec<f64>),
     /// A pressure (Pa) on faces by their corners.
     Pressure(f64, Vec<Vec<u32>>),
+    /// The centrifugal force of a frame that turns.
+    Centrifugal(Turning),
+}
+
+/// A frame that turns, and the masses in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turning {
+    /// The angular velocity of the frame (rad/s).
+    pub rate: DVec3,
+    /// A point of its axis (m).
+    pub about: DVec3,
+    /// The mass of each node (kg).
+    pub masses: Vec<f64>,
 }
 
 impl Loading {
@@ -142,6 +155,12 @@ impl Loading {
         Self { nodes, pull: Pull::Pressure(pressure, faces), course }
     }
 
+    /// The centrifugal force on nodes, in rising order, in a frame that turns about an axis: `m ω² r` away from it. The Coriolis force on what
+    /// moves in the frame is not part of it, so it is for rest and for motion that is slow beside that of the frame.
+    pub fn centrifugal(nodes: Vec<u32>, turning: Turning, course: Course) -> Self {
+        Self { nodes, pull: Pull::Centrifugal(turning), course }
+    }
+
     /// What it does at its full share.
     pub fn pull(&self) -> &Pull {
         &self.pull
@@ -167,6 +186,12 @@ impl Loading {
             Pull::Pressure(pressure, faces) => faces.iter().for_each(|face| {
                 for_each_area(face, position, |node, area| forces[node as usize] -= area * (pressure * share));
             }),
+            Pull::Centrifugal(Turning { rate, about, masses }) => {
+                for (&node, mass) in self.nodes.iter().zip(masses) {
+                    let arm = position[node as usize] - *about;
+                    forces[node as usize] += rate.cross(arm).cross(*rate) * (mass * share);
+                }
+            }
         }
     }
 }

@@ -91,12 +91,9 @@ impl<'a> Runner<'a> {
 
     /// A runner for some of `all` runs that share the threads.
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
-        /// The least number of elements for each additional thread within a run.
-        const LEAST: usize = 2000;
-        let share = rayon::current_num_threads() / all.max(1);
         let running = |&run: &usize| {
             let body = scene.runs[run].body();
-            let threads = share.min(body.elements().len() / LEAST).max(1);
+            let threads = scene.runs[run].threads(all);
             let mut world = scene.world(run);
             world.set_crew(Crew::new(threads));
             let running = Running {

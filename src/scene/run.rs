@@ -85,6 +85,14 @@ impl Run {
         self.of.iter().map(|&body| &*scene.bodies[body].name).filter(|name| !name.is_empty())
     }
 
+    /// The threads within this run, if it is one of so many that share all threads.
+    pub(crate) fn threads(&self, all: usize) -> usize {
+        /// The least number of elements for each additional thread.
+        const LEAST: usize = 2000;
+        let share = rayon::current_num_threads() / all.max(1);
+        share.min(self.body().elements().len() / LEAST).max(1)
+    }
+
     /// The name and the nodes of each of its bodies, if it has several.
     pub(crate) fn several<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a str, Range<usize>)> + Clone {
         let bodies = if self.of.len() > 1 { self.of.len() } else { 0 };

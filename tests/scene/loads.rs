@@ -31,7 +31,7 @@ fn a_load_has_one_kind() {
     case(
         WORLD,
         "nodes = 'left'",
-        "1:9 `load[0]` has no load; expected one of `force`, `traction`, `pressure`, `acceleration` or `torque`",
+        "1:9 `load[0]` has no load; expected one of `force`, `traction`, `pressure`, `acceleration`, `torque` or `centrifugal`",
     );
     case(
         WORLD,
@@ -178,4 +178,40 @@ fn a_summary_tells_of_loads() {
     ] {
         assert!(text.contains(line), "{line} in {text}");
     }
+}
+
+/// A frame that turns stretches a bar from its axis outwards: the end of a thin one moves by `ρ ω² L³ / 3 E`.
+#[test]
+fn a_bar_that_turns_is_stretched() {
+    let scene = good(
+        "gravity = [0, 0, 0]
+        time = { duration = 0, start = 'equilibrium' }
+        run = [{ name = 'one', model = { kind = 'shape-based', young = 1e6 } }]
+        body = { lattice = { cells = [64, 1, 1], side = 0.01 }, density = 1000 }
+        hold = [{ nodes = 'left' }]
+        load = [{ centrifugal = [0, 0, 2], about = [-0.32, 0.005, 0] }]
+        probe = [{ name = 'end', nodes = 'right' }]",
+    );
+    let [along, ..] = scene.displaced(&scene.runs[0], &scene.probes[0], None, &scene.runs[0].initial.position);
+    let expected = 1000.0 * 4.0 * 0.64_f64.powi(3) / 3e6;
+    // The bar is longer then, which adds its strain; cells add the square of their share.
+    assert!((along / expected - 1.0).abs() < 2e-3, "{along} {expected}");
+    let words = scene.summary().to_string();
+    assert!(words.contains("centrifugal at 2 rad/s about (-0.32, 0.005, 0) m on"), "{words}");
+}
+
+#[test]
+fn axes_of_frames_are_told_apart() {
+    case(
+        WORLD,
+        "centrifugal = 2",
+        "1:25 `load[0].centrifugal` is a number, but the body is in space such as centrifugal = [0, 0, 5]",
+    );
+    case(PLANE, "centrifugal = [0, 0, 2]", "1:25 `load[0].centrifugal` is a vector, but the body is in the plane");
+    case(
+        WORLD,
+        "force = [0, 0, 1], about = [0, 0, 0]",
+        "1:30 `load[0]` has `about`, which is the axis of `centrifugal`, with `force`",
+    );
+    case(WORLD, "centrifugal = [0, 0, 2], about = [0, 0]", "1:42 `load[0].about` has 2 coordinates; expected 3");
 }

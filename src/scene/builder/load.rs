@@ -1,10 +1,10 @@
 //! Loads in code.
 
 use super::NodeSet;
-use crate::scene::file::{Coordinates, LoadFile, NodesFile, Positive, TorqueFile};
+use crate::scene::file::{AxialFile, Coordinates, LoadFile, NodesFile, Positive};
 use std::ops::RangeBounds;
 
-/// A load on bodies: a force, a traction, a pressure, an acceleration or a torque.
+/// A load on bodies: a force, a traction, a pressure, an acceleration, a torque or a centrifugal force.
 #[derive(Clone, Debug)]
 pub struct LoadBuilder(pub(super) LoadFile);
 
@@ -36,12 +36,18 @@ impl LoadBuilder {
 
     /// A torque about the centre of nodes (N m), in space.
     pub fn torque(nodes: NodeSet, torque: impl Into<Coordinates>) -> Self {
-        Self(LoadFile { torque: Some(TorqueFile::Vector(torque.into())), ..on_nodes(nodes) })
+        Self(LoadFile { torque: Some(AxialFile::Vector(torque.into())), ..on_nodes(nodes) })
     }
 
     /// A torque about the centre of nodes (N m), counter-clockwise in the plane.
     pub fn torque_in_the_plane(nodes: NodeSet, torque: f64) -> Self {
-        Self(LoadFile { torque: Some(TorqueFile::Number(torque)), ..on_nodes(nodes) })
+        Self(LoadFile { torque: Some(AxialFile::Number(torque)), ..on_nodes(nodes) })
+    }
+
+    /// The centrifugal force on the masses of nodes in a frame that turns at a rate (rad/s) about an axis through a point (m), in space.
+    pub fn centrifugal(nodes: NodeSet, rate: impl Into<Coordinates>, about: impl Into<Coordinates>) -> Self {
+        let (centrifugal, about) = (Some(AxialFile::Vector(rate.into())), Some(about.into()));
+        Self(LoadFile { centrifugal, about, ..on_nodes(nodes) })
     }
 
     /// When it acts (s): `..` for ever, `0.5..2.0` for a while.

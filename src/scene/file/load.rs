@@ -5,7 +5,7 @@ use crate::sim::Ease;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A load on each body: one of `force`, `traction`, `pressure`, `acceleration` and `torque`.
+/// A load on each body: one of `force`, `traction`, `pressure`, `acceleration`, `torque` and `centrifugal`.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["nodes", "faces"] }))]
@@ -28,7 +28,12 @@ pub(in crate::scene) struct LoadFile {
     pub(in crate::scene) acceleration: Option<Coordinates>,
     /// A torque about the centre of the nodes, wherever they are (N m). In space it is a vector, counter-clockwise when that points at the viewer; in the
     /// plane a number, counter-clockwise.
-    pub(in crate::scene) torque: Option<TorqueFile>,
+    pub(in crate::scene) torque: Option<AxialFile>,
+    /// The rate at which the frame of the scene turns (rad/s), about an axis through `about`: the centrifugal force on the masses of nodes. In space it is a vector along
+    /// the axis, in the plane a number. The Coriolis force on what moves is left out, so it is for rest and slow motion.
+    pub(in crate::scene) centrifugal: Option<AxialFile>,
+    /// A point of the axis of `centrifugal` (m). Default: the origin.
+    pub(in crate::scene) about: Option<Coordinates>,
     /// Start (s).
     #[serde(default)]
     #[schemars(range(min = 0.0))]
@@ -58,12 +63,12 @@ pub(in crate::scene) struct ShareFile {
     pub(in crate::scene) share: f64,
 }
 
-/// A torque.
+/// A vector along an axis, which is a number in the plane.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub(in crate::scene) enum TorqueFile {
-    /// In the plane (N m).
+pub(in crate::scene) enum AxialFile {
+    /// In the plane.
     Number(f64),
-    /// In space (N m).
+    /// In space.
     Vector(Coordinates),
 }

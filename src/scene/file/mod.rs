@@ -17,7 +17,7 @@ pub(in crate::scene) use body::{
 };
 pub use body::{Cells, Lattice, Rotation, Start, StartShape, Up};
 pub(in crate::scene) use contact::{ContactFile, ContactRule, PairFile};
-pub(in crate::scene) use load::{LoadFile, TorqueFile};
+pub(in crate::scene) use load::{AxialFile, LoadFile};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, ProbeFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};

@@ -6,8 +6,8 @@ use super::vector;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, list};
 use crate::scene::SceneBody;
-use crate::scene::file::{LoadFile, NodesFile, TorqueFile};
-use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading};
+use crate::scene::file::{AxialFile, LoadFile, NodesFile};
+use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading, Turning};
 use glam::DVec3;
 
 /// A load: on each body of the scene, if it has one.
@@ -23,6 +23,7 @@ enum OnBody {
     Dead(Vec<(u32, DVec3)>),
     Torque(Vec<(u32, f64)>, DVec3),
     Pressure(Vec<Vec<u32>>, f64),
+    Centrifugal(Vec<u32>, Turning),
 }
 
 impl SceneLoad {
@@ -42,6 +43,10 @@ impl SceneLoad {
                 OnBody::Pressure(faces, pressure) => {
                     let moved = faces.iter().map(|face| face.iter().map(|node| first + node).collect());
                     Loading::pressure(moved.collect(), *pressure, course)
+                }
+                OnBody::Centrifugal(nodes, turning) => {
+                    let nodes = nodes.iter().map(|node| first + node).collect();
+                    Loading::centrifugal(nodes, turning.clone(), course)
                 }
             })
         })
@@ -84,6 +89,8 @@ enum Kind {
     Pressure(f64),
     Acceleration(DVec3),
     Torque(DVec3),
+    /// The rate of the frame, and a point of its axis.
+    Centrifugal(DVec3, DVec3),
 }
 
 /// The nodes or the faces of a body with their weights.
@@ -128,10 +135,11 @@ impl Reading<'_> {
 
     /// The only kind that is typed.
     fn kind(&self, report: &mut Collector<'_>) -> Option<Kind> {
-        let LoadFile { force, traction, pressure, acceleration, torque, .. } = self.typed;
+        let LoadFile { force, traction, pressure, acceleration, torque, centrifugal, about, .. } = self.typed;
         let dimension = self.bodies.first()?.body.dimension();
-        let keys = ["force", "traction", "pressure", "acceleration", "torque"];
-        let given = [force.is_some(), traction.is_some(), pressure.is_some(), acceleration.is_some(), torque.is_some()];
+        let keys = ["force", "traction", "pressure", "acceleration", "torque", "centrifugal"];
+        let vectors = [force.is_some(), traction.is_some(), pressure.is_some(), acceleration.is_some()];
+        let given = vectors.into_iter().chain([torque.is_some(), centrifugal.is_some()]);
         let given: Vec<_> = keys.into_iter().zip(given).filter_map(|(key, is_given)| is_given.then_some(key)).collect();
         let [only] = given[..] else {
             let (name, all) = (written(self.path), list(&keys, "or", |key| format!("`{key}`")));
@@ -145,36 +153,26 @@ impl Reading<'_> {
             report.at(self.path, message, help.to_owned());
             return None;
         };
+        if about.is_some() && only != "centrifugal" {
+            let message =
+                format!("`{}` has `about`, which is the axis of `centrifugal`, with `{only}`", written(self.path));
+            report.at_key(&key_path![self.path; "about"], message, "remove it");
+            return None;
+        }
         let path = key_path![self.path; only];
         let typed = [force, traction, acceleration].into_iter().flatten().next();
-        Some(match (only, torque) {
+        Some(match (only, torque.as_ref().or(centrifugal.as_ref())) {
             ("force", _) => Kind::Force(vector(typed?, dimension, &path, report)?),
             ("traction", _) => Kind::Traction(vector(typed?, dimension, &path, report)?),
             ("acceleration", _) => Kind::Acceleration(vector(typed?, dimension, &path, report)?),
-            (_, Some(torque)) => Kind::Torque(self.torque(torque, dimension, &path, report)?),
+            ("centrifugal", Some(rate)) => {
+                let point = key_path![self.path; "about"];
+                let about = about.as_ref().map_or(Some(DVec3::ZERO), |typed| vector(typed, dimension, &point, report));
+                Kind::Centrifugal(axial(rate, (dimension, only), &path, report)?, about?)
+            }
+            (_, Some(torque)) => Kind::Torque(axial(torque, (dimension, only), &path, report)?),
             _ => Kind::Pressure((*pressure)?),
         })
-    }
-
-    fn torque(
-        &self,
-        typed: &TorqueFile,
-        dimension: Dimension,
-        path: &[PathPart<'_>],
-        report: &mut Collector<'_>,
-    ) -> Option<DVec3> {
-        match (typed, dimension) {
-            (TorqueFile::Vector(typed), Dimension::Space) => vector(typed, dimension, path, report),
-            (TorqueFile::Number(size), Dimension::Plane) => Some(DVec3::Z * *size),
-            (_, dimension) => {
-                let (body, help) = match dimension {
-                    Dimension::Space => ("a number, but the body is in space", "such as torque = [0, 0, 5]"),
-                    Dimension::Plane => ("a vector, but the body is in the plane", "such as torque = 5"),
-                };
-                report.at(path, format!("`{}` is {body}", written(path)), help);
-                None
-            }
-        }
     }
 
     /// The load on each body that has one; `None` after a mistake.
@@ -256,6 +254,27 @@ impl Reading<'_> {
     }
 }
 
+/// A vector along an axis, at a key.
+fn axial(
+    typed: &AxialFile,
+    (dimension, key): (Dimension, &str),
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<DVec3> {
+    match (typed, dimension) {
+        (AxialFile::Vector(typed), Dimension::Space) => vector(typed, dimension, path, report),
+        (AxialFile::Number(size), Dimension::Plane) => Some(DVec3::Z * *size),
+        (_, dimension) => {
+            let (body, example) = match dimension {
+                Dimension::Space => ("a number, but the body is in space", "[0, 0, 5]"),
+                Dimension::Plane => ("a vector, but the body is in the plane", "5"),
+            };
+            report.at(path, format!("`{}` is {body}", written(path)), format!("such as {key} = {example}"));
+            None
+        }
+    }
+}
+
 /// A load on chosen nodes or faces of a body.
 fn on_body(kind: &Kind, body: &Body, nodes: Vec<u32>, faces: Vec<Vec<u32>>) -> OnBody {
     let weights: Weighted = match faces.is_empty() {
@@ -274,5 +293,10 @@ fn on_body(kind: &Kind, body: &Body, nodes: Vec<u32>, faces: Vec<Vec<u32>>) -> O
             OnBody::Torque(weights.iter().map(|&(node, weight)| (node, weight / whole)).collect(), torque)
         }
         Kind::Pressure(pressure) => OnBody::Pressure(faces, pressure),
+        Kind::Centrifugal(rate, about) => {
+            let nodes: Vec<u32> = weights.iter().map(|&(node, _)| node).collect();
+            let masses = nodes.iter().map(|&node| body.mass()[node as usize]).collect();
+            OnBody::Centrifugal(nodes, Turning { rate, about, masses })
+        }
     }
 }

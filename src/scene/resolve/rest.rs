@@ -18,10 +18,11 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
     else {
         return;
     };
+    let all = runs.len();
     let find = |run: &Run| {
         let surroundings = run.surroundings((*gravity, 0.0), obstacles, contacts.as_ref());
         let parts: Vec<_> = run.bodies.bodies().iter().cloned().zip(run.models.iter().map(|model| &**model)).collect();
-        equilibrium(&parts, &run.initial, &surroundings, run.step, Crew::default())
+        equilibrium(&parts, &run.initial, &surroundings, run.step, Crew::new(run.threads(all)))
     };
     let found: Vec<_> = runs.par_iter().map(|run| run.recording.is_none().then(|| find(run))).collect();
     for (run, found) in runs.iter_mut().zip(found) {

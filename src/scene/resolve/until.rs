@@ -5,7 +5,7 @@ use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{list, quoted, short};
 use crate::scene::file::EndFile;
 use crate::scene::{AtRest, Scene};
-use crate::sim::{Load, Status};
+use crate::sim::{Crew, Load, Status};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -51,6 +51,7 @@ fn rest(scene: &Scene, number: usize) -> Option<AtRest> {
     let changes = moving.chain(run.loads.iter().map(|load| load.course().end())).fold(0.0, f64::max);
     let mass = run.body().mass();
     let mut world = scene.world(number);
+    world.set_crew(Crew::new(run.threads(scene.runs.len())));
     let mut greatest: f64 = 0.0;
     for frame in 1..=scene.last_frame() {
         let (from, to) = (world.steps(), world.steps_at(scene.moment(frame)));

@@ -4,7 +4,7 @@ use super::{PartSummary, RunSummary, SceneSummary, coordinates};
 use crate::reading::captions::{quantity, typed};
 use crate::reading::words::{count, ends, list, several, short};
 use crate::scene::{AtRest, Probe, Region, Rest, Run, Scene, SceneBody};
-use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape};
+use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape, Turning};
 use glam::DVec3;
 use std::fmt;
 use std::ops::Range;
@@ -195,6 +195,10 @@ fn describe_load(load: &Loading, nodes: &[usize], body: &str, dimension: Dimensi
             format!("torque {} N m on {nodes}", short(torque.z))
         }
         Pull::Torque(torque, _) => format!("torque {} N m on {nodes}", vector(&coordinates(*torque, dimension))),
+        Pull::Centrifugal(Turning { rate, about, .. }) => {
+            let about = vector(&coordinates(*about, dimension));
+            format!("centrifugal at {} rad/s about {about} m on {nodes}", short(rate.length()))
+        }
         Pull::Pressure(pressure, faces) => {
             let (faces, (sides, unit)) = (count(faces.len() as u128), areas);
             format!("pressure {} {unit} on {faces} {sides} with {nodes}", short(*pressure))

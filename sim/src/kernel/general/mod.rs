@@ -387,6 +387,7 @@ impl<W: Law> Stepper for General<W> {
         self.tally.store(memory.get_mut(self.elements * width));
     }
 
+    #[inline]
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
         let RecordAddress { part, record } = match self.places[node] {
             RecordAddress { part: NONE, record } => self.shared.of(record as usize)[0],
@@ -398,6 +399,7 @@ impl<W: Law> Stepper for General<W> {
         (DVec3::new(px, py, pz), DVec3::new(vx, vy, vz))
     }
 
+    #[inline]
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
         let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
         let Self { parts, shared, places, .. } = self;

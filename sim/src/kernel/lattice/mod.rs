@@ -316,6 +316,7 @@ impl Stepper for LatticeStepper {
         self.tally.store(memory.chunks_exact_mut(4).into_remainder().first_mut());
     }
 
+    #[inline]
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
         let at = self.index(node);
         let nodes = self.nodes.as_mut_slice();
@@ -323,6 +324,7 @@ impl Stepper for LatticeStepper {
         (vector(0), vector(VELOCITY))
     }
 
+    #[inline]
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
         let at = self.index(node);
         let nodes = self.nodes.as_mut_slice();

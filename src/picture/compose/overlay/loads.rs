@@ -41,6 +41,7 @@ impl Overlay for Loads {
         let (value, metres, unit) = match (force, pressure) {
             (Some(force), _) => (number::round_below(force), scales.newton, "N"),
             (None, Some(pressure)) => (number::round_below(pressure), scales.pascal, scales.unit),
+            (None, None) if scales.torque == 0.0 => return None,
             (None, None) => {
                 let names = vec![format!("torque {}", quantity(scales.torque, "N m")).into()];
                 return Some(Sample { names, kind: SampleKind::Arrow([place.legend.arrow_length(), size]) });
@@ -77,6 +78,7 @@ impl Overlay for Loads {
                     let chosen = arrows::bearers(&all).into_iter().map(|face| &faces[face as usize]);
                     found.extend(chosen.filter_map(|face| draft.pressed(face, length)));
                 }
+                Pull::Centrifugal(_) => {}
                 Pull::Torque(torque, _) => {
                     let turn = ARC[1] * TAU * share / load.course().greatest();
                     let (middle, axis) = (draft.middle_of(load), torque.normalize_or_zero());
@@ -110,6 +112,8 @@ impl Scales {
                 Pull::Dead(forces) => force = force.max(most * forces.iter().sum::<DVec3>().length()),
                 Pull::Pressure(size, _) => pressure = pressure.max(most * size.abs()),
                 Pull::Torque(turn, _) => torque = torque.max(most * turn.length()),
+                // Its forces differ from node to node.
+                Pull::Centrifugal(_) => {}
             }
         }
         let size = scene.bodies.iter().map(|body| body.body.extent()).fold(0.0, f64::max);
