@@ -1,1 +1,24 @@
+//! [`mass_spring`]: crate::sim::model::mass_spring
+//! [`shape_based`]: crate::sim::model::shape_based
+//! [`SemiImplicitEuler`]: crate::sim::Integrator::SemiImplicitEuler
+//! [`ExplicitEuler`]: crate::sim::Integrator::ExplicitEuler
+//! [`VelocityVerlet`]: crate::sim::Integrator::VelocityVerlet
+//! [`rotation_by_length`]: crate::sim::rotation::linearised::rotation_by_length
+//! [`linear_update`]: mod@crate::sim::rotation::linear_update
+//! [`Obstacle`]: crate::sim::Obstacle
+//! [`Grip`]: crate::sim::Grip
+//! [`torque`]: crate::sim::rotation::torque
+//! [`optimum`]: crate::sim::rotation::davenport1968::optimum
+//! [`Placement`]: crate::sim::Placement
+//! [`rotation_by_arctangent`]: crate::sim::rotation::linearised::rotation_by_arctangent
+//! [`linearised`]: crate::sim::rotation::linearised
+//! [`linearised::solve`]: crate::sim::rotation::linearised::solve
+//! [`iterate`]: crate::sim::rotation::linearised::iterate
+//! [`is_well_posed`]: crate::sim::rotation::linearised::is_well_posed
+//! [`Diagnostics::residual`]: crate::sim::Diagnostics::residual
+//! [`rebound`]: crate::sim::Placed::rebound
+//! [`passes`]: crate::sim::model::shape_based::Parameters::passes
+//! [`robust`]: mod@crate::sim::rotation::robust
+//! [`World::report`]: crate::sim::World::report
+// In the repository the page links to files; of two definitions the first holds.
 #![doc = include_str!("../docs/paper.md")]

@@ -1,11 +1,13 @@
 """Deformable bodies that keep their local shapes, simulated and drawn beside mass-spring models.
 
-    import localshape
+```python
+import localshape
 
-    scene = localshape.Scene.load("scenes/fig4b.toml")
-    result = scene.simulate()
-    result["Mass-spring"].position  # frames x nodes x 3 (m)
-    result.frame(0.5)  # the picture at 0.5 s
+scene = localshape.Scene.load("scenes/fig4b.toml")
+result = scene.simulate()
+result["Mass-spring"].position  # frames x nodes x 3 (m)
+result.frame(0.5)  # the picture at 0.5 s
+```
 """
 
 from ._core import Picture, Result, RunResult, Scene, World, __version__

@@ -8,16 +8,16 @@ from typing import Any, NamedTuple
 class Mistake(NamedTuple):
     """A mistake in a scene, or a warning."""
 
-    #: The key or entry, such as ``run[0].model.stiffness``; empty where there is none.
     place: str
-    #: What was found and what was expected.
+    """The key or entry, such as `run[0].model.stiffness`; empty where there is none."""
     message: str
-    #: What to do, unless the message says it.
+    """What was found and what was expected."""
     remedy: str | None = None
-    #: Line in the scene file, counted from 1; ``None`` if there is no file.
+    """What to do, unless the message says it."""
     line: int | None = None
-    #: Column in characters, counted from 1.
+    """Line in the scene file, counted from 1; `None` if there is no file."""
     column: int | None = None
+    """Column in characters, counted from 1."""
 
     @property
     def found(self) -> str:
@@ -38,11 +38,11 @@ def mistakes(found: list[dict[str, Any]]) -> list[Mistake]:
 class SceneError(ValueError):
     """A scene, a setting or an array with mistakes. Its text tells all of them.
 
-    ``place``, ``found``, ``expected``, ``remedy``, ``line`` and ``column`` are those of the first mistake.
+    `place`, `found`, `expected`, `remedy`, `line` and `column` are those of the first mistake.
     """
 
-    #: All mistakes, in the order of the file.
     mistakes: list[Mistake]
+    """All mistakes, in the order of the file."""
 
     def __init__(self, message: str, found: list[dict[str, Any]] | None = None) -> None:
         super().__init__(message, found or [])

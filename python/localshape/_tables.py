@@ -10,26 +10,26 @@ import numpy as np
 class Divergence(NamedTuple):
     """Where and when a run diverged. This is a result, not an error."""
 
-    #: End of the first step that was rejected (s).
     time: float
-    #: Number of that step, counted from 1.
+    """End of the first step that was rejected (s)."""
     step: int
-    #: Name of the body whose node was too fast; empty if it has none.
+    """Number of that step, counted from 1."""
     body: str
-    #: First element of that body with the node; ``None`` if it belongs to no element.
+    """Name of the body whose node was too fast; empty if it has none."""
     element: int | None
-    #: Whether no node was too fast, but a recording ends here.
+    """First element of that body with the node; `None` if it belongs to no element."""
     is_end: bool
+    """Whether no node was too fast, but a recording ends here."""
 
 
 class Diagnostics(Dict[str, Any]):
-    """Diagnostics by their names in ``diagnostics.csv``, with the times (s) as ``time``.
+    """Diagnostics by their names in `diagnostics.csv`, with the times (s) as `time`.
 
-    Each is an array with a number for each time, or a row of three for a vector. ``docs/files.md`` has meanings and units.
+    Each is an array with a number for each time, or a row of three for a vector. `docs/files.md` has meanings and units.
     """
 
     def to_pandas(self) -> Any:
-        """A ``pandas.DataFrame`` with the columns of ``diagnostics.csv``: a vector has three, such as ``momentum_x``."""
+        """A `pandas.DataFrame` with the columns of `diagnostics.csv`: a vector has three, such as `momentum_x`."""
         import pandas  # type: ignore[import-untyped, unused-ignore]
 
         columns = {}
