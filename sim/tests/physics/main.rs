@@ -24,6 +24,7 @@ mod grounds;
 mod implicit;
 mod integrators;
 mod loads;
+mod machines;
 #[cfg(feature = "scene")]
 mod mass_damping;
 mod masses;
