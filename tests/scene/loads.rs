@@ -213,5 +213,5 @@ fn axes_of_frames_are_told_apart() {
         "force = [0, 0, 1], about = [0, 0, 0]",
         "1:30 `load[0]` has `about`, which is the axis of `centrifugal`, with `force`",
     );
-    case(WORLD, "centrifugal = [0, 0, 2], about = [0, 0]", "1:42 `load[0].about` has 2 coordinates; expected 3");
+    case(WORLD, "centrifugal = [0, 0, 2], about = [0, 0]", "1:44 `load[0].about` has 2 coordinates; expected 3");
 }

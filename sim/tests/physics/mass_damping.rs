@@ -109,7 +109,7 @@ fn predictions_of_steps_know_it() {
                 let around = Surroundings { mass_damping: rate, ..Surroundings::default() };
                 let mut world = World::new(&body, start, &model, around, Stepping::new(integrator, share * limit));
                 world.advance(3000);
-                world.state().velocity.iter().any(|speed| !(speed.length() < 1e-2))
+                world.state().velocity.iter().any(|speed| speed.length() > 1e-2 || speed.is_nan())
             };
             assert_eq!([grows(0.98), grows(1.02)], [false, true], "{integrator:?}");
         }

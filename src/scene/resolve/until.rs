@@ -28,7 +28,7 @@ pub(super) fn end(typed: &Typed<'_>, scene: &mut Scene, report: &mut Collector<'
         scene.duration = scene.frame_time(last);
         scene.runs.iter_mut().zip(found).for_each(|(run, found)| run.comes_to_rest = found);
     } else {
-        let names = list(&restless, "and", |name| quoted(name));
+        let names = list(&restless, "and", quoted);
         let message = format!(
             "{names} {} not at rest after {} s",
             if restless.len() == 1 { "is" } else { "are" },
