@@ -145,7 +145,7 @@ pub(super) fn document(
                     array(&mut xml, name, "Float64", 1, &bytes);
                 }
                 Column::Flags(name, flags) => {
-                    array(&mut xml, name, "UInt8", 1, &flags.iter().map(|&flag| flag.into()).collect::<Vec<u8>>());
+                    array(&mut xml, name, "UInt8", 1, &flags.iter().map(|&flag| u8::from(flag)).collect::<Vec<u8>>());
                 }
             }
         }
