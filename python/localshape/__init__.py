@@ -12,6 +12,7 @@ result.frame(0.5)  # the picture at 0.5 s
 
 from ._core import Picture, Result, RunResult, Scene, World, __version__
 from ._errors import DeviceError, Mistake, SceneError
+from ._given import Recording
 from ._tables import Diagnostics, Divergence
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "Divergence",
     "Mistake",
     "Picture",
+    "Recording",
     "Result",
     "RunResult",
     "Scene",

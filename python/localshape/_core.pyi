@@ -1,6 +1,7 @@
 """The compiled part of the package ``localshape``."""
 
 import os
+from collections.abc import Callable, Iterable
 from typing import Any, final
 
 import numpy as np
@@ -9,7 +10,20 @@ from numpy.typing import NDArray
 from ._errors import Mistake
 from ._tables import Diagnostics, Divergence
 
-__all__ = ["Picture", "Result", "RunResult", "Scene", "World", "__version__", "_compare", "_index", "_program"]
+__all__ = [
+    "Picture",
+    "Result",
+    "RunResult",
+    "Scene",
+    "World",
+    "__version__",
+    "_compare",
+    "_count",
+    "_film",
+    "_frame",
+    "_index",
+    "_program",
+]
 
 __version__: str
 
@@ -21,6 +35,9 @@ def _compare(
     accepts: bool,
     page: os.PathLike[str] | None,
 ) -> tuple[str, bool, str, list[str]]: ...
+def _count(result: Result) -> int: ...
+def _film(words: list[str], called: str, progress: Callable[[float], Any] | None) -> None: ...
+def _frame(result: Result, number: int) -> Picture: ...
 def _index(page: os.PathLike[str], all: list[tuple[str, str, str, bool, str]]) -> None: ...
 
 @final
@@ -49,6 +66,18 @@ class Result:
     def __len__(self) -> int: ...
     def __contains__(self, name: object, /) -> bool: ...
     def frame(self, t: float) -> Picture: ...
+    def animate(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        frames: Iterable[int] | None = None,
+        speed: float | None = None,
+        fps: float | None = None,
+        plays: int | None = None,
+        hold_last: float | None = None,
+        width: int | None = None,
+        overwrite: bool = False,
+    ) -> None: ...
 
 @final
 class RunResult:
@@ -64,6 +93,8 @@ class RunResult:
     def velocity(self) -> NDArray[np.float64]: ...
     @property
     def diagnostics(self) -> Diagnostics: ...
+    @property
+    def bodies(self) -> dict[str, Diagnostics]: ...
     @property
     def divergence(self) -> Divergence | None: ...
 
@@ -90,6 +121,7 @@ class World:
     def step(self, steps: int = 1) -> None: ...
     def set_forces(self, forces: NDArray[Any] | None) -> None: ...
     def set_gravity(self, gravity: Any) -> None: ...
+    def set_path(self, obstacle: str | int, path: Callable[[float], Any] | None) -> None: ...
     @property
     def forces(self) -> NDArray[np.float64]: ...
     @property

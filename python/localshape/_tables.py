@@ -23,7 +23,7 @@ class Divergence(NamedTuple):
 
 
 class Diagnostics(Dict[str, Any]):
-    """Diagnostics by their names in `diagnostics.csv`, with the times (s) as `time`.
+    """Diagnostics by their names in `diagnostics.csv`, with the numbers of frames as `frame` and the times (s) as `time`.
 
     Each is an array with a number for each time, or a row of three for a vector. `docs/files.md` has meanings and units.
     """
@@ -42,4 +42,4 @@ class Diagnostics(Dict[str, Any]):
 
     def _only_row(self) -> dict[str, Any]:
         """The only row, without its time."""
-        return {name: values[0].copy() for name, values in self.items() if name != "time"}
+        return {name: values[0].copy() for name, values in self.items() if name not in ("frame", "time")}

@@ -7,12 +7,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::error::Error;
 
-/// The exception for a scene that cannot be read: `SceneError` with its mistakes, or that of Python for files.
-pub(crate) fn of_scene(py: Python<'_>, error: &SceneError) -> PyErr {
+/// The exception for a scene that cannot be read: `SceneError` with its mistakes, or that of Python for files. A folder is left out.
+pub(crate) fn of_scene(py: Python<'_>, error: &SceneError, folder: &str) -> PyErr {
     match error {
         SceneError::Missing { .. } => PyFileNotFoundError::new_err(error.to_string()),
         SceneError::Unreadable { .. } => PyOSError::new_err(with_causes(error)),
-        _ => scene_error(py, &error.to_string(), error.mistakes()),
+        _ => scene_error(py, &error.to_string().replace(folder, ""), error.mistakes(), folder),
     }
 }
 
@@ -31,25 +31,25 @@ pub(crate) fn at(py: Python<'_>, place: &str, message: String, help: Option<&str
         Some(help) => format!("{}; {help}", mistake.message),
         None => mistake.message.clone(),
     };
-    scene_error(py, &words, &[mistake])
+    scene_error(py, &words, &[mistake], "")
 }
 
 /// `localshape.SceneError`, which is made in Python.
-fn scene_error(py: Python<'_>, words: &str, mistakes: &[Mistake]) -> PyErr {
+fn scene_error(py: Python<'_>, words: &str, mistakes: &[Mistake], folder: &str) -> PyErr {
     let made = || {
-        let mistakes = mistakes.iter().map(|mistake| as_dict(py, mistake)).collect::<PyResult<Vec<_>>>()?;
+        let mistakes = mistakes.iter().map(|mistake| as_dict(py, mistake, folder)).collect::<PyResult<Vec<_>>>()?;
         py.import("localshape._errors")?.getattr("SceneError")?.call1((words, mistakes))
     };
     made().map_or_else(|error| error, PyErr::from_value)
 }
 
-/// A mistake or warning as a dict: the arguments of `localshape.Mistake`.
-pub(crate) fn as_dict<'py>(py: Python<'py>, mistake: &Mistake) -> PyResult<Bound<'py, PyDict>> {
+/// A mistake or warning as a dict: the arguments of `localshape.Mistake`. A folder is left out.
+pub(crate) fn as_dict<'py>(py: Python<'py>, mistake: &Mistake, folder: &str) -> PyResult<Bound<'py, PyDict>> {
     let Mistake { line, column, place, message, help, .. } = mistake;
     let dict = PyDict::new(py);
     dict.set_item("place", place)?;
-    dict.set_item("message", message)?;
-    dict.set_item("remedy", help)?;
+    dict.set_item("message", message.replace(folder, ""))?;
+    dict.set_item("remedy", help.as_ref().map(|help| help.replace(folder, "")))?;
     dict.set_item("line", (*line > 0).then_some(line))?;
     dict.set_item("column", (*line > 0).then_some(column))?;
     Ok(dict)

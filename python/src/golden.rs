@@ -39,12 +39,13 @@ pub(crate) fn _compare(
 fn outcome(result: &Result, golden: &Path, told: Told, accepts: bool) -> std::result::Result<Outcome, String> {
     let mut device = DEVICE.lock().unwrap_or_else(PoisonError::into_inner);
     let keys = match &*result.made.origin {
-        Origin::Keys(keys) => Some(&**keys),
+        Origin::Keys(keys, _) => Some(keys.without_folder(result.made.origin.folder())),
         Origin::File(_) => None,
     };
     let frame = |number| Python::attach(|py| result.whole(py, number as usize)).map_err(|error| error.to_string());
     let Result { made, history: course, .. } = result;
-    let simulated = Simulated { scene: &made.scene, keys, settings: &made.settings, course, frame: &frame };
+    let simulated =
+        Simulated { scene: &made.scene, keys: keys.as_ref(), settings: &made.settings, course, frame: &frame };
     simulated.compare(golden, told, device.get_or_insert_default(), accepts)
 }
 

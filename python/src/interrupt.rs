@@ -48,7 +48,9 @@ impl Slices {
 
 /// Does work on a thread of the pool, where parts of it need not wait for threads to wake, while this thread hears signals. The work
 /// gets a function that fails once it has to end.
-pub(crate) fn in_pool<T: Send>(work: impl FnOnce(&dyn Fn() -> PyResult<()>) -> PyResult<T> + Send) -> PyResult<T> {
+pub(crate) fn in_pool<T: Send>(
+    work: impl FnOnce(&(dyn Fn() -> PyResult<()> + Sync)) -> PyResult<T> + Send,
+) -> PyResult<T> {
     let is_stopped = AtomicBool::new(false);
     let go_on = || match is_stopped.load(Ordering::Relaxed) {
         true => Err(PyRuntimeError::new_err("interrupted")),

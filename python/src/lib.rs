@@ -8,6 +8,8 @@
 mod convert;
 mod error;
 #[cfg(feature = "render")]
+mod film;
+#[cfg(feature = "render")]
 mod golden;
 mod interrupt;
 mod made;
@@ -23,6 +25,9 @@ mod _core {
     use pyo3::prelude::*;
     use std::ffi::OsString;
 
+    #[cfg(feature = "render")]
+    #[pymodule_export]
+    use super::film::{_count, _film, _frame};
     #[cfg(feature = "render")]
     #[pymodule_export]
     use super::golden::{_compare, _index};

@@ -17,7 +17,15 @@ pub(crate) struct Made {
 /// Where a scene comes from.
 pub(crate) enum Origin {
     File(PathBuf),
-    Keys(Box<SceneKeys>),
+    /// Keys, and the folder with the files of what they have in memory.
+    Keys(Box<SceneKeys>, Held),
+}
+
+/// A folder of files, which Python removes with the object that holds it.
+pub(crate) struct Held {
+    /// Its path with a slash at the end; empty if there is none.
+    pub(crate) folder: String,
+    pub(crate) _holder: Py<PyAny>,
 }
 
 impl Origin {
@@ -26,8 +34,16 @@ impl Origin {
         let limits = Limits::default();
         let read = py.detach(|| match self {
             Self::File(path) => localshape::Scene::load_with(path, settings, &limits),
-            Self::Keys(keys) => localshape::Scene::from_keys(keys, settings, &limits),
+            Self::Keys(keys, _) => localshape::Scene::from_keys(keys, settings, &limits),
         });
-        read.map(Arc::new).map_err(|error| error::of_scene(py, &error))
+        read.map(Arc::new).map_err(|error| error::of_scene(py, &error, self.folder()))
+    }
+
+    /// The folder that messages leave out before the names of files; empty if there is none.
+    pub(crate) fn folder(&self) -> &str {
+        match self {
+            Self::Keys(_, held) => &held.folder,
+            Self::File(_) => "",
+        }
     }
 }

@@ -7,7 +7,7 @@ use crate::picture::Picture;
 use localshape::Runner;
 use localshape::glam::DVec3;
 use localshape::runner::{Frame, History};
-use localshape::sim::{Diagnostic, Diagnostics, Divergence, Status, Value};
+use localshape::sim::{Diagnostic, Diagnostics, Divergence, Snapshot, Status, Value};
 #[cfg(feature = "render")]
 use numpy::PyUntypedArrayMethods;
 use numpy::ndarray::Array;
@@ -15,6 +15,8 @@ use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+#[cfg(feature = "render")]
+use std::path::PathBuf;
 
 /// The number of the run with a name.
 pub(crate) fn run_of(scene: &localshape::Scene, name: &str) -> PyResult<usize> {
@@ -50,14 +52,27 @@ pub(crate) struct RunResult {
     position: Py<PyArray3<f64>>,
     /// Velocity of each node in each frame (m/s): F × N × 3, float64.
     velocity: Py<PyArray3<f64>>,
-    /// The diagnostics of each frame, by the names in `diagnostics.csv`: arrays of length F, of vectors F × 3.
+    /// The diagnostics by the names in `diagnostics.csv`: arrays of length R, of vectors R × 3, with R = F rows. With `time.every` there are
+    /// more rows, whose `frame` is nan.
     diagnostics: Py<PyAny>,
+    /// The same of each body by its name; empty if the run has one body.
+    bodies: Py<PyDict>,
     /// Where and when the run diverged, if it did.
     divergence: Option<Py<PyAny>>,
 }
 
 /// Positions and velocities of a run, frame after frame.
 type Nodes = [Vec<f64>; 2];
+/// Time (s), diagnostics of all bodies of a run, and of each of several.
+type Row = (f64, Diagnostics, Vec<Diagnostics>);
+
+/// The frames of some runs; the nodes and the rows between frames of each; and what pictures show of the course.
+struct Course {
+    frames: Vec<Frame>,
+    nodes: Vec<Nodes>,
+    rows: Vec<Vec<Row>>,
+    history: History,
+}
 
 /// Simulates some runs of a scene to its end.
 pub(crate) fn simulate(py: Python<'_>, made: Made, runs: &[usize]) -> PyResult<Result> {
@@ -65,18 +80,14 @@ pub(crate) fn simulate(py: Python<'_>, made: Made, runs: &[usize]) -> PyResult<R
         return Err(PyValueError::new_err("there are no runs to simulate; expected the name of at least one"));
     }
     let scene = &*made.scene;
-    let (frames, nodes, history) = py.detach(|| in_pool(|go_on| course(scene, runs, go_on)))?;
-    let of_run = |(place, nodes)| Py::new(py, RunResult::new(py, scene, &frames, place, nodes)?);
-    let runs = nodes.into_iter().enumerate().map(of_run).collect::<PyResult<_>>()?;
+    let Course { frames, nodes, rows, history } = py.detach(|| in_pool(|go_on| course(scene, runs, go_on)))?;
+    let of_run = |(place, of)| Py::new(py, RunResult::new(py, scene, &frames, place, of)?);
+    let runs = nodes.into_iter().zip(rows).enumerate().map(of_run).collect::<PyResult<_>>()?;
     Ok(Result { made, frames, history, runs })
 }
 
-/// The frames of some runs, the nodes of each run, and what pictures show of the course. An error of `go_on` ends it.
-fn course(
-    scene: &localshape::Scene,
-    runs: &[usize],
-    go_on: &dyn Fn() -> PyResult<()>,
-) -> PyResult<(Vec<Frame>, Vec<Nodes>, History)> {
+/// The course of some runs. An error of `go_on` ends it.
+fn course(scene: &localshape::Scene, runs: &[usize], go_on: &dyn Fn() -> PyResult<()>) -> PyResult<Course> {
     let count = scene.last_frame() as usize + 1;
     let reserve = |run: &usize| -> PyResult<Nodes> {
         let mut nodes = Nodes::default();
@@ -89,7 +100,7 @@ fn course(
     };
     let mut nodes = runs.iter().map(reserve).collect::<PyResult<Vec<_>>>()?;
     let (mut frames, mut slices) = (Vec::with_capacity(count), Slices::new());
-    let mut runner = Runner::for_pictures(scene, runs);
+    let mut runner = Runner::for_pictures(scene, runs).with_rows();
     for index in 0..count as u64 {
         slices.until(|steps| runner.advance_towards(scene.moment(index), steps), go_on)?;
         let mut frame = runner.frame(index);
@@ -100,12 +111,18 @@ fn course(
         frames.push(frame);
     }
     scene.check_recordings()?;
-    Ok((frames, nodes, runner.take_history()))
+    Ok(Course { frames, nodes, rows: runner.take_rows(), history: runner.take_history() })
 }
 
 impl RunResult {
     /// The run at a place among those of some frames. Its arrays are the buffers of its nodes.
-    fn new(py: Python<'_>, scene: &localshape::Scene, frames: &[Frame], place: usize, nodes: Nodes) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        scene: &localshape::Scene,
+        frames: &[Frame],
+        place: usize,
+        (nodes, between): (Nodes, Vec<Row>),
+    ) -> PyResult<Self> {
         let of_run = || frames.iter().map(|frame| &frame.runs[place]);
         let run = &scene.runs[frames[0].runs[place].run];
         let shape = [frames.len(), run.body().len(), 3];
@@ -115,13 +132,31 @@ impl RunResult {
         };
         let [position, velocity] = nodes.map(array);
         let time: Vec<f64> = of_run().map(|run| run.snapshot.time).collect();
-        let diagnostics = tables(py, &time, &of_run().map(|run| run.snapshot.diagnostics).collect::<Vec<_>>())?;
+        // As in `diagnostics.csv`: between two frames the rows between them.
+        let (mut between, mut numbers, mut rows) = (between.into_iter().peekable(), Vec::new(), Vec::new());
+        for frame in frames {
+            let Snapshot { time, diagnostics, of_bodies, .. } = &frame.runs[place].snapshot;
+            rows.extend(std::iter::from_fn(|| between.next_if(|(before, ..)| before < time)));
+            numbers.resize(rows.len(), f64::NAN);
+            while between.next_if(|(same, ..)| same <= time).is_some() {}
+            rows.push((*time, *diagnostics, of_bodies.clone()));
+            numbers.push(frame.index as f64);
+        }
+        let times: Vec<f64> = rows.iter().map(|(time, ..)| *time).collect();
+        let table = |of: Vec<Diagnostics>| tables(py, &numbers, &times, &of);
+        let diagnostics = table(rows.iter().map(|(_, all, _)| *all).collect())?;
+        let bodies = PyDict::new(py);
+        for (at, &body) in run.of.iter().enumerate().filter(|_| run.of.len() > 1) {
+            let of_body = table(rows.iter().map(|(.., of_bodies)| of_bodies[at]).collect())?;
+            bodies.set_item(&scene.bodies[body].name, of_body)?;
+        }
+        let bodies = bodies.unbind();
         let divergence = match of_run().next_back().map(|last| last.snapshot.status) {
             Some(Status::Diverged(found)) => Some(divergence(py, scene, &run.of, found)?),
             _ => None,
         };
         let time = fixed(PyArray1::from_vec(py, time));
-        Ok(Self { name: run.name.clone(), step: run.step, time, position, velocity, diagnostics, divergence })
+        Ok(Self { name: run.name.clone(), step: run.step, time, position, velocity, diagnostics, bodies, divergence })
     }
 }
 
@@ -146,9 +181,10 @@ pub(crate) fn divergence(
     Ok(made.call1((time, step, body, element, is_end))?.unbind())
 }
 
-/// The diagnostics at some times (s) as `localshape.Diagnostics`: an array of each, with a row of three for a vector.
-pub(crate) fn tables(py: Python<'_>, time: &[f64], rows: &[Diagnostics]) -> PyResult<Py<PyAny>> {
+/// The diagnostics in some frames at some times (s) as `localshape.Diagnostics`: an array of each, with a row of three for a vector.
+pub(crate) fn tables(py: Python<'_>, frames: &[f64], time: &[f64], rows: &[Diagnostics]) -> PyResult<Py<PyAny>> {
     let columns = PyDict::new(py);
+    columns.set_item("frame", PyArray1::from_slice(py, frames))?;
     columns.set_item("time", PyArray1::from_slice(py, time))?;
     for diagnostic in Diagnostic::ALL {
         let values = || rows.iter().map(|row| diagnostic.value(row));
@@ -206,9 +242,22 @@ impl Result {
             let end = self.made.scene.frame_time(last as u64);
             return Err(PyValueError::new_err(format!("there is no frame at {t} s; frames are from 0 to {end} s")));
         }
-        let frame = self.whole(py, (number as usize).min(last))?;
-        self.check_compared()?;
-        py.detach(|| Picture::compose(&self.made.scene, &self.history, frame)).map_err(PyValueError::new_err)
+        self.picture(py, (number as usize).min(last))
+    }
+
+    /// Writes an animation of the frames, as `localshape animate` does. The ending of `path` chooses the format: `.gif`, `.apng`, or `.mp4` and
+    /// `.webm`, which need `ffmpeg`.
+    ///
+    /// `frames` are numbers of frames (default: all), `speed` is a factor, `fps` a rate (1/s), `plays` a number of plays (0 for endless),
+    /// `hold_last` a time (s), `width` that of the pictures (px). A file that was not made so is replaced only with `overwrite`. A bar
+    /// shows progress if `tqdm` is installed.
+    #[cfg(feature = "render")]
+    #[pyo3(
+        signature = (path, **options),
+        text_signature = "($self, path, *, frames=None, speed=None, fps=None, plays=None, hold_last=None, width=None, overwrite=False)"
+    )]
+    fn animate(slf: &Bound<'_, Self>, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+        slf.py().import("localshape._film")?.getattr("animate")?.call((slf, path), options).map(drop)
     }
 
     fn __repr__(&self) -> String {
@@ -223,6 +272,18 @@ impl Result {
 
 #[cfg(feature = "render")]
 impl Result {
+    /// The picture of a frame.
+    pub(crate) fn picture(&self, py: Python<'_>, index: usize) -> PyResult<Picture> {
+        let frame = self.whole(py, index)?;
+        self.check_compared()?;
+        py.detach(|| Picture::compose(&self.made.scene, &self.history, frame)).map_err(PyValueError::new_err)
+    }
+
+    /// The number of frames.
+    pub(crate) fn count(&self) -> usize {
+        self.frames.len()
+    }
+
     /// A frame with its positions and velocities.
     pub(crate) fn whole(&self, py: Python<'_>, index: usize) -> PyResult<Frame> {
         let mut frame = self.frames[index].clone();

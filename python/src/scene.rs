@@ -1,6 +1,6 @@
 //! Scenes: files or keys, and their settings.
 
-use crate::made::{Made, Origin};
+use crate::made::{Held, Made, Origin};
 use crate::result::{self, Result, run_of};
 use crate::world::World;
 use crate::{convert, error};
@@ -13,7 +13,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// A scene: bodies, their surroundings, and runs, each with an elastic model.
 ///
 /// `Scene(**keys)` takes the keys of scene files: nested dicts and lists, and NumPy arrays for the lists of bodies, such as `nodes`
-/// (N × 2 or N × 3, m) and `elements` (rows of nodes, with -1 at the end of shorter ones). `Scene.load(path)` reads a scene file.
+/// (N × 2 or N × 3, m) and `elements` (rows of nodes, with -1 at the end of shorter ones). The `mesh` of a body is a path, or a mesh
+/// of meshio, trimesh or pyvista; the `states` of a run are a path or a `Recording`. `Scene.load(path)` reads a scene file.
 #[pyclass(frozen, module = "localshape")]
 pub(crate) struct Scene {
     state: Mutex<Made>,
@@ -40,10 +41,13 @@ impl Scene {
     #[new]
     #[pyo3(signature = (**keys))]
     fn new(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let (keys, lists) = keys.map(convert::keys).transpose()?.unwrap_or_default();
+        let given = py.import("localshape._given")?.call_method1("files", (keys,))?;
+        let (keys, folder, holder): (Bound<'_, PyDict>, String, Py<PyAny>) = given.extract()?;
+        let (keys, lists) = convert::keys(&keys)?;
         let title = keys.get("title").and_then(|title| title.as_str()).filter(|title| !title.is_empty());
         let name = title.unwrap_or("scene").to_owned();
-        Self::made(py, Origin::Keys(Box::new(SceneKeys::new(name, keys, lists))))
+        let keys = Box::new(SceneKeys::new(name, keys, lists));
+        Self::made(py, Origin::Keys(keys, Held { folder, _holder: holder }))
     }
 
     /// Reads a scene file.
@@ -77,20 +81,21 @@ impl Scene {
 
     /// What the scene contains, as `localshape check --json` says it. Mistakes are found when a scene is made or set.
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let summary = serde_json::to_string(&self.now().summary()).map_err(|error| error::unexpected(&error))?;
-        py.import("json")?.call_method1("loads", (summary,))
+        let Made { origin, scene, .. } = self.state().clone();
+        let summary = serde_json::to_string(&scene.summary()).map_err(|error| error::unexpected(&error))?;
+        py.import("json")?.call_method1("loads", (summary.replace(origin.folder(), ""),))
     }
 
     /// What is allowed but probably a mistake, in the scene and in its pictures: a list of `Mistake`.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let scene = self.now();
+        let Made { origin, scene, .. } = self.state().clone();
         #[cfg(feature = "render")]
         let doubts = py.detach(|| localshape::internals::doubts(&scene).0);
         #[cfg(not(feature = "render"))]
         let doubts = Vec::new();
-        let found =
-            scene.warnings.iter().chain(&doubts).map(|one| error::as_dict(py, one)).collect::<PyResult<Vec<_>>>()?;
+        let found = scene.warnings.iter().chain(&doubts).map(|one| error::as_dict(py, one, origin.folder()));
+        let found = found.collect::<PyResult<Vec<_>>>()?;
         py.import("localshape._errors")?.call_method1("mistakes", (PyList::new(py, found)?,))
     }
 

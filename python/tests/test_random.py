@@ -1,6 +1,7 @@
 """Random arrays and values at every function: exceptions, never a crash."""
 
 import os
+import types
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from conftest import CUBES, TRIANGLE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from localshape import Scene
+from localshape import Recording, Scene
 
 # As many examples as a test may take; more with LOCALSHAPE_EXAMPLES.
 usual = settings(
@@ -109,4 +110,53 @@ def test_damaged_states(cubes, noise):
     at = len(noise) * 7 % len(state)
     tried(setattr, world, "state", state[:at] + noise + state[at + len(noise) :])
     world.step(2)
+    world.state = state
+
+
+#: What meshes of other packages have.
+BLOCKS = st.lists(st.tuples(st.sampled_from(["tetra", "triangle", "wedge", "hexahedron", "polygon", "line3", "x"]) | VALUES, VALUES), max_size=3)
+BLOCKS = BLOCKS.map(lambda blocks: [types.SimpleNamespace(type=kind, data=data) for kind, data in blocks])
+MESHES = st.dictionaries(st.sampled_from(["points", "vertices", "faces", "cells", "celltypes"]), VALUES, max_size=4) | st.fixed_dictionaries(
+    {"points": st.just(np.eye(4, 3)) | NUMBERS, "cells": BLOCKS}, optional={"point_sets": VALUES, "cell_sets": VALUES}
+)
+
+
+@usual
+@given(MESHES.map(lambda parts: types.SimpleNamespace(**parts)) | VALUES)
+def test_meshes(mesh):
+    tried(Scene, body={"mesh": mesh, "density": 1.0}, **TRIANGLE)
+    tried(Scene, body=[{"mesh": mesh}, mesh], **TRIANGLE)
+
+
+@usual
+@given(st.dictionaries(st.sampled_from(["times", "positions", "elements", "rest", "velocities", "masses", "faces", "step", "name"]), VALUES, max_size=4))
+def test_recordings(parts):
+    whole = {"times": [0.0, 1.0], "positions": np.tile(CORNERS["nodes"], (2, 1, 1)), "elements": CORNERS["elements"], **parts}
+    mine = tried(Recording, **whole)
+    if mine is not None:
+        made = tried(Scene, body=CORNERS, **{**TRIANGLE, "run": [{"name": "Mine", "states": mine}]})
+        if made is not None:
+            assert np.isfinite(made.simulate()["Mine"].position).all()
+
+
+OPTIONS = st.dictionaries(st.sampled_from(["frames", "speed", "fps", "plays", "hold_last", "width", "overwrite", "x"]), VALUES, min_size=1, max_size=2)
+
+
+@usual
+@given(VALUES, OPTIONS)
+def test_animations(cubes, path, options):
+    """No path of these has the ending of an animation, so that none is drawn."""
+    tried(cubes[1].animate, path, **options)
+
+
+@usual
+@given(VALUES, VALUES)
+def test_paths(cubes, obstacle, at):
+    world = cubes[2]
+    state = world.state
+    tried(world.set_path, obstacle, at)
+    tried(world.set_path, 0, lambda t: at)
+    tried(world.step, 2)
+    world.set_path(0, None)
+    assert np.isfinite(world.position).all()
     world.state = state

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from conftest import CUBES, TRIANGLE
+from conftest import CUBES, CUBES_FILE, TRIANGLE
 from localshape import DeviceError, Scene
 
 
@@ -37,7 +37,29 @@ def test_states_are_those_of_the_program(result, cubes_file, program, tmp_path):
         for key in table.columns:
             expected = [float(row[key]) for row in rows if row["run"] == name]
             np.testing.assert_array_equal(table[key], expected, key)
-        assert len(table.columns) == len(rows[0]) - 4
+        assert len(table.columns) == len(rows[0]) - 3 and result[name].bodies == {}
+
+
+def test_rows_of_bodies_and_between_frames(program, tmp_path):
+    """They are those of `diagnostics.csv`."""
+    text = CUBES_FILE.replace("duration = 0.2,", "duration = 0.2, every = 0.013,").replace("body.lattice = { cells = [2, 1, 1], side = 0.1 }", "")
+    text = text.replace("body.velocity = [0, -2, 0]", "").replace("step = 'T/70'", "step = 'T/3'")
+    text += "".join(f"[[body]]\nname = '{name}'\nlattice = {{ cells = [2, 1, 1], side = 0.1 }}\noffset = [{at}, 0.1, 0]\n" for at, name in enumerate("ab"))
+    (tmp_path / "two.toml").write_text(text)
+    program("simulate", tmp_path / "two.toml", "-o", tmp_path / "out")
+    with open(tmp_path / "out/diagnostics.csv") as file:
+        rows = list(csv.DictReader(file))
+    result = Scene.load(tmp_path / "two.toml").simulate()
+    assert result["Springs"].divergence is not None
+    for name in result.runs:
+        run = result[name]
+        assert list(run.bodies) == ["a", "b"]
+        for body, table in [("all", run.diagnostics), *run.bodies.items()]:
+            told = [row for row in rows if (row["run"], row["body"]) == (name, body)]
+            for key, column in table.to_pandas().items():
+                np.testing.assert_array_equal(column, [float(row[key] or "nan") for row in told], key)
+        frames = run.diagnostics["frame"]
+        assert np.isnan(frames).any() and frames[~np.isnan(frames)].tolist() == [0, 1, 2, 3, 4]
 
 
 def test_arrays_are_no_copies_and_stay_as_they_are(result):

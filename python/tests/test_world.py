@@ -68,6 +68,80 @@ def test_forces_and_nodes(scene):
     world.set_gravity(np.array([0, -1, 0.5]))
 
 
+def test_obstacles_along_paths(scene):
+    """A floor that rises pushes the cubes up; one that sinks leaves them behind."""
+    scene.set("obstacle[0].name", "floor")
+    world, calls = scene.world("Local shape"), []
+
+    def rise(t):
+        calls.append(t)
+        return [0, 0.5 * t, 0]
+
+    world.set_path("floor", rise)
+    assert calls == [0.0, world.dt]
+    world.step(50)
+    assert calls[-2:] == [49 * world.dt, 50 * world.dt] and len(calls) == 2 + 2 * 50
+    world.step(round(0.5 / world.dt))
+    lowest = world.position[:, 1].min()
+    assert lowest >= 0.5 * world.time - 1e-9
+    # A copy goes on with the same bits, and neither moves the floor of the other.
+    same, other = copy.copy(world), copy.copy(world)
+    other.set_path(0, lambda t: np.zeros(6))
+    for one in (same, other, world):
+        one.step(20)
+    assert same.state == world.state != other.state
+    world.set_path("floor", None)
+    world.step(round(0.5 / world.dt))
+    assert world.position[:, 1].min() < lowest
+
+
+def test_a_path_is_that_of_the_same_keys(scene):
+    def path(t):
+        return [0, 0.2 * t, 0, 0, 0, 0.1 * t]
+
+    turned = {"axis": [0, 0, 1], "angle": 0.1}
+    scene.set("obstacle[0].path", {"keys": [{"time": 0}, {"time": 1, "shift": [0, 0.2, 0], "rotation": turned}], "ease": "linear"})
+    keys = scene.world("Local shape")
+    scene.set("obstacle[0].path", {"keys": [{"time": 0}, {"time": 9}]})
+    world = scene.world("Local shape")
+    world.set_path(0, path)
+    for one in (keys, world):
+        one.step(200)
+    np.testing.assert_allclose(world.position, keys.position, atol=1e-9)
+
+
+def test_paths_that_fail(scene):
+    world = scene.world("Springs")
+
+    def late(t):
+        if t > 10 * world.dt:
+            raise ZeroDivisionError("its own")
+        return (0, 0, 0)
+
+    world.set_path(0, late)
+    with pytest.raises(ZeroDivisionError, match="its own"):
+        world.step(100)
+    assert world.steps == 10
+    for wrong in (None, 3, "abc", [0, 0], [0, np.nan, 0], [0, np.inf, 0], [0, 1e300, 0], np.zeros((3, 3)), [0, 0, 0, 0], {}):
+        with pytest.raises(SceneError, match="expected three finite numbers") as caught:
+            world.set_path(0, lambda t, wrong=wrong: wrong)
+        assert caught.value.place == "obstacle[0]"
+    with pytest.raises(TypeError):
+        world.set_path(0, 3)
+    for wrong in (1, "roof"):
+        with pytest.raises(KeyError, match="no obstacle"):
+            world.set_path(wrong, late)
+    for wrong in (-1, 2**70, 1.5, None):
+        with pytest.raises((OverflowError, TypeError)):
+            world.set_path(wrong, late)
+    # A path may look at the world, but not advance it.
+    world.set_path(0, lambda t: [0, min(world.position[:, 1].min(), 0), 0])
+    world.step(3)
+    world.set_path(0, lambda t: world.step() if t > 14 * world.dt else [0, 0, 0])
+    with pytest.raises((RuntimeError, RecursionError, SceneError)):
+        world.step(5)
+
+
 @pytest.mark.parametrize("name", ["position", "velocity", "forces"])
 def test_wrong_arrays(scene, name):
     world = scene.world("Springs")

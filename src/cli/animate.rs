@@ -10,7 +10,7 @@ use crate::animation::{Animation, AnimationError, Format, Image, Reel, Timeline,
 use crate::golden::Pixels;
 use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, picture_size, read_tags};
 use crate::reading::beside::{self, name_of};
-use clap::{Args, ValueHint};
+use clap::{Args, Parser, ValueHint};
 use serde_json::json;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -77,6 +77,23 @@ pub(super) struct Animate {
 
 impl Animate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
+        let (format, reel, timeline) = self.prepare()?;
+        interrupt::listen();
+        let comment = comment(words, &reel.scenes.join(", "));
+        let bar = self.printing.progress(&self.out.to_string_lossy(), PARTS);
+        bar.set_message(format!("{} frames", reel.moments.len()));
+        let progress = |done| bar.set_position((done * PARTS as f64) as u64);
+        let result = self.write(format, (&reel, &timeline), &comment, &progress, &|| !interrupt::requested());
+        bar.finish_and_clear();
+        match result {
+            Ok(written) => self.report(reel.moments.len(), &written).map(|()| Status::Done),
+            Err(AnimationError::Stopped) => Ok(Status::Interrupted),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The format, if the file can be made.
+    fn check(&self) -> Result<Format, Failure> {
         let format = Format::of(&self.out).map_err(Failure::usage)?;
         if self.plays.is_some() && !matches!(format, Format::Gif | Format::Apng) {
             bail!("--loop is for .gif and .apng; with other formats the player decides how often they play");
@@ -84,6 +101,12 @@ impl Animate {
         if !self.overwrite {
             replaceable(&self.out)?;
         }
+        Ok(format)
+    }
+
+    /// The format, and the frames and when they are shown.
+    fn prepare(&self) -> Result<(Format, Folder, Timeline), Failure> {
+        let format = self.check()?;
         let asked = |last| self.frames.as_ref().map(|frames| frames.select(last));
         let reel = Folder::open(&self.folder, asked, self.width, self.fps)?;
         let mut timeline = Timeline::of(&reel.moments);
@@ -96,27 +119,21 @@ impl Animate {
         if let Some(time) = self.hold_last {
             timeline = timeline.holding(time);
         }
-        interrupt::listen();
-        let comment = comment(words, &reel.scenes.join(", "));
-        let bar = self.printing.progress(&self.out.to_string_lossy(), PARTS);
-        bar.set_message(format!("{} frames", reel.moments.len()));
-        let animation = Animation {
-            reel: &reel,
-            timeline: &timeline,
-            plays: self.plays.unwrap_or(0),
-            comment: &comment,
-            threads: self.threads.count(),
-            progress: &|done| bar.set_position((done * PARTS as f64) as u64),
-            go_on: &|| !interrupt::requested(),
-        };
+        Ok((format, reel, timeline))
+    }
+
+    /// Writes the file, with a comment.
+    fn write(
+        &self,
+        format: Format,
+        (reel, timeline): (&Folder, &Timeline),
+        comment: &str,
+        progress: &(dyn Fn(f64) + Sync),
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Written, AnimationError> {
+        let (plays, threads) = (self.plays.unwrap_or(0), self.threads.count());
         let _lock = FolderLock::beside_others(folder_of(&self.out));
-        let result = animation.write(format, &self.out);
-        bar.finish_and_clear();
-        match result {
-            Ok(written) => self.report(reel.moments.len(), &written).map(|()| Status::Done),
-            Err(AnimationError::Stopped) => Ok(Status::Interrupted),
-            Err(error) => Err(error.into()),
-        }
+        Animation { reel, timeline, plays, comment, threads, progress, go_on }.write(format, &self.out)
     }
 
     fn report(&self, frames: usize, written: &Written) -> Result<(), Failure> {
@@ -130,6 +147,51 @@ impl Animate {
         }
         if self.printing.quiet { Ok(()) } else { console::print(&summary(&self.out, frames, written)) }
     }
+}
+
+/// The command with its words, for programs in other languages.
+#[derive(Debug, Parser)]
+struct Alone {
+    #[command(flatten)]
+    animate: Animate,
+}
+
+impl Alone {
+    /// The command with these words, the program's name first, if its file can be made.
+    fn of(words: &[OsString]) -> Result<Animate, Failure> {
+        let wrong = |error: clap::Error| {
+            let text = error.to_string();
+            Failure::usage(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
+        };
+        let Self { animate } = Self::try_parse_from(words).map_err(wrong)?;
+        animate.check()?.check_program()?;
+        Ok(animate)
+    }
+}
+
+/// Checks the words of a command before there are frames.
+///
+/// # Errors
+/// Those of the command.
+pub fn check_animation(words: &[OsString]) -> Result<(), Failure> {
+    Alone::of(words).map(drop)
+}
+
+/// Makes an animation as the command does whose words these are. Its comment tells what was called instead. Progress is a completed
+/// fraction of the work, which ends early once `go_on` is false.
+///
+/// # Errors
+/// Those of the command, and an interruption.
+pub fn animate(
+    words: &[OsString],
+    called: &str,
+    progress: &(dyn Fn(f64) + Sync),
+    go_on: &(dyn Fn() -> bool + Sync),
+) -> Result<(), Failure> {
+    let animate = Alone::of(words)?;
+    let (format, reel, timeline) = animate.prepare()?;
+    let comment = comment(&[called.into()], &reel.scenes.join(", "));
+    animate.write(format, (&reel, &timeline), &comment, progress, go_on).map(drop).map_err(Failure::from)
 }
 
 /// Makes an animation of frames in a folder, with a comment.

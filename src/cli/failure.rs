@@ -68,6 +68,11 @@ impl Failure {
         self
     }
 
+    /// The exit status and the message, unless it was printed already.
+    pub fn told(&self) -> (Status, &str) {
+        (self.status, self.message.as_deref().unwrap_or_default())
+    }
+
     /// Prints the message and returns the exit status.
     pub fn report(self) -> Status {
         if let Some(message) = &self.message {

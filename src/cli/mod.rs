@@ -39,16 +39,17 @@ mod simulate;
 #[cfg(feature = "render")]
 mod still;
 
+#[cfg(feature = "render")]
+pub use {
+    animate::{animate, check_animation},
+    driver::{settle, width_to_set},
+    still::{doubts, unprintable},
+};
 pub use {
     console::print,
     failure::{Failure, Status},
     interrupt::{listen, requested},
     options::ThreadOptions,
-};
-#[cfg(feature = "render")]
-pub use {
-    driver::{settle, width_to_set},
-    still::{doubts, unprintable},
 };
 
 use clap::{Parser, Subcommand};

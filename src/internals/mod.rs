@@ -2,7 +2,7 @@
 
 pub use crate::cli::{Failure, Status, ThreadOptions, listen, print, requested, run};
 #[cfg(feature = "render")]
-pub use crate::cli::{doubts, settle, unprintable, width_to_set};
+pub use crate::cli::{animate, check_animation, doubts, settle, unprintable, width_to_set};
 pub use crate::colour::{ciede2000, lab, linear};
 pub use crate::golden::Pixels;
 pub use crate::golden::page::{Listed, Page, PicturePair, index};

@@ -206,8 +206,8 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// Records the rows of `diagnostics.csv` between frames, if the scene asks for them; see [`Frames::take_rows`].
-    pub(crate) fn with_rows(mut self) -> Self {
+    /// Records the rows of `diagnostics.csv` between frames, if the scene asks for them; see [`Self::take_rows`].
+    pub fn with_rows(mut self) -> Self {
         let is_asked = self.scene.every.is_some();
         self.runs.iter_mut().for_each(|running| running.rows = is_asked.then(VecDeque::new));
         self
@@ -269,6 +269,13 @@ impl<'a> Runner<'a> {
                 }
             });
         }
+    }
+
+    /// Takes the rows of each run so far, those at frames, too: time (s), and diagnostics of all bodies together and of each of several.
+    pub fn take_rows(&mut self) -> Vec<Vec<(f64, Diagnostics, Vec<Diagnostics>)>> {
+        let row = |TableRow { time, all, of_bodies, .. }| (time, all, of_bodies);
+        let taken = |running: &mut Running| running.rows.iter_mut().flat_map(std::mem::take).map(row).collect();
+        self.runs.iter_mut().map(taken).collect()
     }
 
     /// What was kept of the course so far. No more is kept.

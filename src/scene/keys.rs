@@ -44,6 +44,11 @@ impl SceneKeys {
         Self { name: name.into(), text, lists }
     }
 
+    /// The same keys, without the name of a folder that has a name of its own in every process.
+    pub fn without_folder(&self, folder: &str) -> Self {
+        Self { text: self.text.replace(folder, ""), ..self.clone() }
+    }
+
     /// Puts the lists in place of their first entries.
     #[cfg(feature = "render")]
     pub(super) fn put_lists(&self, keys: &mut Table) {
