@@ -53,7 +53,7 @@ class Recording:
     ) -> None:
         given = {"times": times, "positions": positions, "rest": rest, "velocities": velocities, "masses": masses, "step": step}
         arrays: dict[str, NDArray[Any]] = {key: _numbers(key, value) for key, value in given.items() if value is not None}
-        if elements is not None and rest is None and arrays["positions"].size:
+        if elements is not None and rest is None and arrays["positions"].ndim and arrays["positions"].size:
             arrays["rest"] = arrays["positions"][:1].reshape(arrays["positions"].shape[1:])
         arrays.update({key: _rows(key, value) for key, value in [("elements", elements), ("faces", faces)] if value is not None})
         names = {"times": "time", "positions": "position", "velocities": "velocity", "masses": "mass"}
