@@ -331,7 +331,8 @@ fn rebound<L: Lanes>(floor: &Floor, nodes: &mut NodeVector<L>, inside: L::Mask) 
 #[inline(never)]
 fn columns(forces: [&[f64]; 3], nodes: [usize; MOST], width: usize) -> [[f64; MOST]; 3] {
     let first = nodes[0];
-    if nodes[width - 1] == first + width - 1
+    // Nodes of a body that is divided are in any order.
+    if nodes[..width].iter().zip(first..).all(|(&node, next)| node == next)
         && let [Some(x), Some(y), Some(z)] = forces.map(|of| of.get(first..)?.first_chunk::<MOST>())
     {
         return [*x, *y, *z];

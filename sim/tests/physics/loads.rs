@@ -3,10 +3,10 @@
 use super::INTEGRATORS;
 use super::support::{bricks, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape_sim::model::ElasticModel;
+use localshape_sim::model::{ElasticModel, linear};
 use localshape_sim::{
-    Body, Course, Diagnostic, Diagnostics, Ease, Grip, Integrator, Kernel, Load, Loading, Moment, Motion, Springs,
-    State, Stepping, Surroundings, World, for_each_area,
+    Body, Course, Diagnostic, Diagnostics, Ease, Grip, Integrator, Kernel, Load, Loading, Material, Moment, Motion,
+    Springs, State, Stepping, Surroundings, World, for_each_area,
 };
 use std::sync::Arc;
 
@@ -172,6 +172,34 @@ fn work_and_states_do_not_depend_on_the_division_into_calls() {
         }
         assert_eq!(parts.state(), whole.state(), "{text}");
         assert_eq!(parts.diagnostics().work.to_bits(), whole.diagnostics().work.to_bits(), "{text}");
+    }
+}
+
+/// Fast code, which divides a body and moves nodes in an order of its own, gives each node the force on it.
+#[test]
+fn every_node_feels_its_own_force() {
+    let own = |node: usize| DVec3::new(1.0, 0.1, 0.01) * (1.0 + node as f64);
+    for layers in 1..10 {
+        for cells in [[2, 2, layers], [layers, 2, 2], [3, layers, 3]] {
+            let body = bricks(cells, DVec3::splat(0.1));
+            let steady =
+                Loading::dead((0..body.len() as u32).collect(), (0..body.len()).map(own).collect(), Course::ALWAYS);
+            let changing = move |_: f64, _: &[DVec3], forces: &mut [DVec3]| {
+                forces.iter_mut().enumerate().for_each(|(node, force)| *force += own(node));
+            };
+            let loads: [Arc<dyn Load>; 2] = [Arc::new(steady), Arc::new(changing)];
+            for load in loads {
+                let model = linear::model(&body, Material { young: 1e5, poisson: 0.3 }, 0.0).expect("bricks");
+                let around = Surroundings { loads: vec![load], ..Surroundings::default() };
+                let stepping = Stepping::new(Integrator::SemiImplicitEuler, STEP);
+                let mut world = World::new(&body, State::at_rest(body.rest().to_vec()), &*model, around, stepping);
+                world.advance(1);
+                for (node, velocity) in world.state().velocity.iter().enumerate() {
+                    let force = *velocity * (body.mass()[node] / STEP);
+                    assert!((force - own(node)).length() < 1e-6, "{cells:?}, node {node}: {force} N");
+                }
+            }
+        }
     }
 }
 
