@@ -6,6 +6,7 @@
 
 mod contact;
 mod folder;
+mod load;
 mod material;
 mod methods;
 mod models;
@@ -28,6 +29,7 @@ mod work_precision;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use contact::Contact;
+use load::Loads;
 use localshape::internals::{Failure, ThreadOptions};
 use localshape::{Limits, Scene};
 use material::{Beam, Cook, Patch, Time};
@@ -52,6 +54,7 @@ Examples:
   localshape-study beam                        how the models bend in output/study-beam/
   localshape-study beam-time                   the error of a beam against time
   localshape-study contact                     what must hold where bodies meet
+  localshape-study load                        bodies at rest under loads, beside closed forms
   localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
   localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
 
@@ -116,6 +119,11 @@ enum Name {
     },
     /// Cook's membrane in the plane, beside the literature
     Cook {
+        #[command(flatten)]
+        threads: ThreadOptions,
+    },
+    /// Loads: bodies at rest that are pulled, twisted, bent and pressed, beside closed forms and the literature
+    Load {
         #[command(flatten)]
         threads: ThreadOptions,
     },
@@ -228,6 +236,7 @@ impl Name {
             Self::Beam { threads } => task(Box::new(Beam::usual()), threads.count(), Vec::new()),
             Self::Patch { threads } => task(Box::new(Patch::usual()), threads.count(), Vec::new()),
             Self::Cook { threads } => task(Box::new(Cook::usual()), threads.count(), Vec::new()),
+            Self::Load { threads } => task(Box::new(Loads::USUAL), threads.count(), Vec::new()),
             Self::Contact { threads } => task(Box::new(Contact::usual()), threads.count(), Vec::new()),
             Self::BeamTime => task(Box::new(Time::usual()), 1, Vec::new()),
             Self::Table1 { orientations, threads } => {

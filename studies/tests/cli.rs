@@ -113,6 +113,7 @@ fn help_and_version_are_results() {
         "beam",
         "patch",
         "cook",
+        "load",
         "contact",
         "beam-time",
         "table1",

@@ -69,7 +69,7 @@ const MOST: usize = 60;
 /// `held` tells which coordinates of a node do not change. Nodes of an element should have near numbers.
 ///
 /// The matrix is that of central differences of the forces. Nodes that have no element in common with any third one are moved at once.
-pub(super) fn balance(
+pub(crate) fn balance(
     body: &Arc<Body>,
     model: &dyn ElasticModel,
     load: &[DVec3],
@@ -83,6 +83,7 @@ pub(super) fn balance(
     let (apart, width) = (2 * reach + 1, axes * (reach + 1));
     let is_held = |at: usize| held[at / axes][at % axes];
     let (mut forces, mut position) = (Forces::new(body, model, start), start.to_vec());
+    let mut before = f64::INFINITY;
     for _ in 0..MOST {
         let here = forces.follow(&position);
         let off = |at: usize| if is_held(at) { 0.0 } else { (here[at / axes] + load[at / axes])[at % axes] };
@@ -113,9 +114,11 @@ pub(super) fn balance(
             .zip(changes)
             .for_each(|(node, change)| (0..axes).for_each(|axis| node[axis] += change[axis]));
         let most = right.iter().fold(0.0, |most, change| if change.abs() <= most { most } else { change.abs() });
-        if most < LAST * body.extent() {
+        // Round-off may keep changes of slender bodies from being as small.
+        if most < LAST * body.extent() || most < SMALL * body.extent() && most > 0.5 * before {
             return Some(position);
         }
+        before = most;
         if !most.is_finite() {
             return None;
         }

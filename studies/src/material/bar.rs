@@ -8,20 +8,20 @@ use localshape::sim::{Body, Material};
 use std::sync::Arc;
 
 /// A bar.
-pub(super) struct Bar {
-    pub(super) body: Arc<Body>,
+pub(crate) struct Bar {
+    pub(crate) body: Arc<Body>,
     /// Length of a cell's edges (m).
     side: f64,
     /// Width and depth, along y and x (m).
-    pub(super) section: [f64; 2],
-    pub(super) length: f64,
+    pub(crate) section: [f64; 2],
+    pub(crate) length: f64,
     /// Nodes at the held end and at the loaded one.
     ends: [Vec<usize>; 2],
 }
 
 impl Bar {
     /// A bar of cells of a side (m), along x, y and z, with a density (kg/m³).
-    pub(super) fn new(elements: Elements, cells: [u32; 3], side: f64, density: f64) -> Self {
+    pub(crate) fn new(elements: Elements, cells: [u32; 3], side: f64, density: f64) -> Self {
         let body = elements.block(&cells, side, (0.0, 1), density);
         let [depth, width, length] = cells.map(|cells| f64::from(cells) * side);
         let ends = [-0.5, 0.5].map(|end| Self::layer(&body, end * length, side));
@@ -33,7 +33,7 @@ impl Bar {
     }
 
     /// A load (N) on the end, on each node in proportion to the area of the end around it.
-    fn load(&self, total: DVec3) -> Vec<DVec3> {
+    pub(crate) fn load(&self, total: DVec3) -> Vec<DVec3> {
         let [low, high] = [f64::min, f64::max].map(|pick| {
             let rest = self.ends[1].iter().map(|&node| self.body.rest()[node]);
             rest.reduce(|one, other| DVec3::new(pick(one.x, other.x), pick(one.y, other.y), 0.0)).unwrap_or_default()
@@ -65,30 +65,45 @@ impl Bar {
         settle(&self.body, model, &self.load(DVec3::X * load), &self.clamped(), start, step)
     }
 
-    fn clamped(&self) -> Vec<[bool; 3]> {
+    /// Which coordinates of each node do not change: those of its held end.
+    pub(crate) fn clamped(&self) -> Vec<[bool; 3]> {
         let mut held = vec![[false; 3]; self.body.len()];
         self.ends[0].iter().for_each(|&node| held[node] = [true; 3]);
         held
     }
 
-    /// The nodes at its held end.
-    pub(super) fn held(&self) -> &[usize] {
-        &self.ends[0]
+    /// The nodes at its first end, 0, or its last one, 1.
+    pub(crate) fn end(&self, end: usize) -> &[usize] {
+        &self.ends[end]
+    }
+
+    /// The nodes of the layer nearest to a share of its length from its middle.
+    pub(crate) fn layer_at(&self, share: f64) -> Vec<usize> {
+        let height = libm::round((share + 0.5) * self.length / self.side) * self.side - 0.5 * self.length;
+        Self::layer(&self.body, height, self.side)
+    }
+
+    /// The nodes of its loaded end with the least and with the greatest x.
+    pub(crate) fn sides(&self) -> [Vec<usize>; 2] {
+        [-0.5, 0.5].map(|share| {
+            let is_there = |node: usize| (self.body.rest()[node].x - share * self.section[1]).abs() < 1e-6 * self.side;
+            self.ends[1].iter().copied().filter(|&node| is_there(node)).collect()
+        })
     }
 
     /// The mean displacement of its loaded end (m).
-    pub(super) fn tip(&self, position: &[DVec3]) -> DVec3 {
+    pub(crate) fn tip(&self, position: &[DVec3]) -> DVec3 {
         mean_shift(&self.body, position, &self.ends[1])
     }
 
     /// `E I` (N m²), with the load across the depth.
-    pub(super) fn rigidity(&self, material: Material) -> f64 {
+    pub(crate) fn rigidity(&self, material: Material) -> f64 {
         let [width, depth] = self.section;
         material.young * width * depth * depth * depth / 12.0
     }
 
     /// A model of a material on the bar, and the material that it is there. For springs that is what one measures by pulling the bar.
-    pub(super) fn model(&self, model: &Model, material: Material) -> Option<(Arc<dyn ElasticModel>, Material)> {
+    pub(crate) fn model(&self, model: &Model, material: Material) -> Option<(Arc<dyn ElasticModel>, Material)> {
         let made = model.on(&self.body, material, self.side)?;
         let is = if model.is_springs() { self.pulled(made.as_ref(), material)? } else { material };
         Some((made, is))
@@ -110,14 +125,12 @@ impl Bar {
         let [width, depth] = self.section;
         let load = STRAIN * about.young * width * depth;
         let found = balance(&self.body, model, &self.load(DVec3::Z * load), &held, self.body.rest())?;
-        let layers = [-0.25, 0.25].map(|share| {
-            let height = libm::round((share + 0.5) * self.length / self.side) * self.side - 0.5 * self.length;
-            (height, Self::layer(&self.body, height, self.side))
-        });
-        let [low, high] = [0, 1].map(|at| mean_shift(&self.body, &found, &layers[at].1).z);
-        let strain = (high - low) / (layers[1].0 - layers[0].0);
+        let layers = [-0.25, 0.25].map(|share| self.layer_at(share));
+        let [low, high] = [0, 1].map(|at| mean_shift(&self.body, &found, &layers[at]).z);
+        let [bottom, top] = [0, 1].map(|at| self.body.rest()[layers[at][0]].z);
+        let strain = (high - low) / (top - bottom);
         // The sides at half of the depth away from the middle.
-        let middle: Vec<_> = layers.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
+        let middle: Vec<_> = layers.iter().flatten().copied().collect();
         let side = |sign: f64| -> Vec<usize> {
             let is_there = |&node: &usize| (self.body.rest()[node].x - 0.5 * sign * depth).abs() < 1e-6 * self.side;
             middle.iter().copied().filter(is_there).collect()

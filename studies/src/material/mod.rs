@@ -12,7 +12,8 @@ mod patch;
 mod theory;
 mod time;
 
-pub(crate) use balance::Forces;
+pub(crate) use balance::{Forces, balance};
+pub(crate) use bar::Bar;
 pub(crate) use beam::Beam;
 pub(crate) use cook::Cook;
 pub(crate) use patch::Patch;
@@ -33,12 +34,12 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Model {
     /// Its name in tables, without its elements.
-    name: &'static str,
+    pub(crate) name: &'static str,
     /// As in a scene.
-    kind: &'static str,
+    pub(crate) kind: &'static str,
     /// A further key and its value.
     more: Option<[&'static str; 2]>,
-    elements: Elements,
+    pub(crate) elements: Elements,
 }
 
 /// Elements of a lattice.
@@ -89,7 +90,7 @@ impl Model {
     }
 
     /// A row of a table: its name and its elements, then other cells.
-    fn row(&self, is_flat: bool, cells: impl IntoIterator<Item = Cell>) -> Vec<Cell> {
+    pub(crate) fn row(&self, is_flat: bool, cells: impl IntoIterator<Item = Cell>) -> Vec<Cell> {
         let names: [Cell; 2] = [format!("`{}`", self.name).into(), self.elements.name(is_flat).into()];
         names.into_iter().chain(cells).collect()
     }
@@ -107,12 +108,12 @@ impl Model {
     }
 
     /// Whether `E` and `ν` follow from springs and from the body, in place of a material with any of them.
-    fn is_springs(&self) -> bool {
+    pub(crate) fn is_springs(&self) -> bool {
         models::is_springs(self.kind)
     }
 
     /// The model of a material on a body of cells with a side (m). `None` for a model that does not take this body.
-    fn on(&self, body: &Body, material: Material, side: f64) -> Option<Arc<dyn ElasticModel>> {
+    pub(crate) fn on(&self, body: &Body, material: Material, side: f64) -> Option<Arc<dyn ElasticModel>> {
         let more = self.more.map(|[key, value]| (key.to_owned(), json!(value)));
         Alike::material(material, 0.5 * side).model(body, self.kind, 0.0, more)
     }
@@ -122,7 +123,7 @@ impl Elements {
     const ALL: [Self; 2] = [Self::Cells, Self::Simplices];
 
     /// The name of the elements in space and in the plane.
-    fn name(self, is_flat: bool) -> &'static str {
+    pub(crate) fn name(self, is_flat: bool) -> &'static str {
         match (self, is_flat) {
             (Self::Cells, false) => "hexahedra",
             (Self::Cells, true) => "quadrilaterals",
@@ -132,7 +133,7 @@ impl Elements {
     }
 
     /// A block of cells of a side (m), disturbed as `irregular` in scenes, with a density (kg/m³).
-    fn block(self, cells: &[u32], side: f64, (irregular, seed): (f64, u32), density: f64) -> Arc<Body> {
+    pub(crate) fn block(self, cells: &[u32], side: f64, (irregular, seed): (f64, u32), density: f64) -> Arc<Body> {
         let elements = match (self, cells.len()) {
             (Self::Cells, _) => Cells::Cells,
             (Self::Simplices, 2) => Cells::Triangles,
@@ -153,6 +154,6 @@ fn mean_shift(body: &Body, position: &[DVec3], nodes: &[usize]) -> DVec3 {
 }
 
 /// A number with some decimals, or a dash.
-fn decimals(number: Option<f64>, decimals: usize) -> Cell {
+pub(crate) fn decimals(number: Option<f64>, decimals: usize) -> Cell {
     or_dash(number.map(|number| format!("{number:.decimals$}")))
 }

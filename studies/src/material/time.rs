@@ -163,7 +163,7 @@ impl Cantilever {
         for part in 1..=PARTS {
             position = bar.bent(made.as_ref(), load * f64::from(part) / f64::from(PARTS), &position)?;
         }
-        let nodes = bar.held().iter().map(|&node| node as u32).collect();
+        let nodes = bar.end(0).iter().map(|&node| node as u32).collect();
         let held = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still };
         let restraint =
             Restraint { grips: std::slice::from_ref(&held), duration: f64::INFINITY, ..Restraint::default() };
