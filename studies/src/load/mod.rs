@@ -136,12 +136,13 @@ fn table(results: &[Measured]) -> Table {
     }))
 }
 
-/// The order with which the last error fell; a dash where it did not, or is small.
+/// The order with which the last error fell; `None` where it did not, changed its sign, or is small.
 fn order(ratios: &[Option<f64>]) -> Option<f64> {
     const SMALL: f64 = 1e-3;
     let &[before, after] = ratios.last_chunk()?;
-    let [before, after] = [(before? - 1.0).abs(), (after? - 1.0).abs()];
-    (before > after.max(SMALL)).then(|| libm::log2(before / after))
+    let [before, after] = [before? - 1.0, after? - 1.0];
+    let falls = before.abs() > after.abs().max(SMALL) && before * after > 0.0;
+    falls.then(|| libm::log2(before / after))
 }
 
 /// Bodies, each with its model.
