@@ -31,11 +31,20 @@ pub(crate) struct Painter {
     glyphs: HashMap<GlyphKey, Arc<[PathEl]>>,
 }
 
+/// The vectors that pages are painted with: of all processors of a kind the same, so that the bytes of pictures are, too.
+fn level() -> Level {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(level) = Level::try_detect().and_then(Level::as_sse4_2) {
+        return Level::Sse4_2(level);
+    }
+    Level::baseline()
+}
+
 impl Painter {
     /// A painter of pages of a width and height (px).
     pub(crate) fn new(size: [u16; 2]) -> Self {
-        let level = Level::try_detect().and_then(Level::as_sse4_2).map_or(Level::baseline(), Level::Sse4_2);
-        let context = RenderContext::new_with(size[0], size[1], RenderSettings { level, num_threads: 0 });
+        let settings = RenderSettings { level: level(), num_threads: 0 };
+        let context = RenderContext::new_with(size[0], size[1], settings);
         Self { size, context, resources: Resources::new(), glyphs: HashMap::new() }
     }
 
