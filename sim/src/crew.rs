@@ -93,14 +93,19 @@ impl Crew {
     /// # Panics
     /// If `work` panics on any thread.
     pub(crate) fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
+        self.each_of(items, |_, item| work(item));
+    }
+
+    /// As [`Self::each`], with the number of each item.
+    pub(crate) fn each_of<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         if self.threads().min(items.len()) <= 1 {
-            return items.iter_mut().for_each(work);
+            return items.iter_mut().enumerate().for_each(|(number, item)| work(number, item));
         }
-        let queue = Mutex::new(items.iter_mut());
+        let queue = Mutex::new(items.iter_mut().enumerate());
         self.run(&|_| {
             let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-            while let Some(item) = next() {
-                work(item);
+            while let Some((number, item)) = next() {
+                work(number, item);
             }
         });
     }

@@ -233,9 +233,17 @@ impl System {
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);
         }
-        let changed = &mut Vec::new();
-        let impulses = self.impulses.as_ref();
-        self.meet(End { interval, before: before.nodes(), position, velocity, timing, changed, impulses }, constraints);
+        let Some(stage) = &self.contact else { return };
+        let some = |all: &[DVec3]| stage.nodes().iter().map(|&node| all[node as usize]).collect();
+        let [start, mut end] = [[&before.position, &before.velocity], [&*position, &*velocity]]
+            .map(|[at, speed]| State::new(some(at), some(speed)));
+        let (changed, impulses, before) = (&mut Vec::new(), self.impulses.as_ref(), start.nodes());
+        let State { position: places, velocity: speeds, .. } = &mut end;
+        self.meet(End { interval, before, position: places, velocity: speeds, timing, changed, impulses }, constraints);
+        for number in changed.iter().map(|&number| number as usize) {
+            let node = stage.nodes()[number] as usize;
+            (position[node], velocity[node]) = (end.position[number], end.velocity[number]);
+        }
     }
 
     /// Lets surfaces meet at the end of a step. `constraints` is the memory of grips in the step.

@@ -2,6 +2,8 @@
 //!
 //! C. Ericson, Real-Time Collision Detection (2005), sections 5.1.2, 5.1.5 and 5.1.9.
 
+use super::lanewise::{along_segments, in_triangle};
+use crate::lanes::{Lanes, One};
 use glam::DVec3;
 
 /// The closest point of a segment or triangle to a point, as shares of its corners.
@@ -24,6 +26,20 @@ pub(super) enum On {
     Corner(usize),
 }
 
+/// The number of the inside of a triangle or segment among its parts.
+pub(super) const INSIDE: f64 = 6.0;
+
+impl On {
+    /// By the number of a part, as lanes have it: 0 to 2 for corners, 3 to 5 for sides, then the inside.
+    pub(super) fn of(part: f64) -> Self {
+        match part as usize {
+            corner @ 0..3 => Self::Corner(corner),
+            side @ 3..6 => Self::Side(side - 3),
+            _ => Self::Inside,
+        }
+    }
+}
+
 /// The closest point of a segment.
 pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> Nearest {
     let along = b - a;
@@ -39,65 +55,17 @@ pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> Nearest {
 }
 
 /// The closest point of a triangle.
-pub(super) fn of_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> Nearest {
-    let corner = |at: usize| {
-        let mut shares = [0.0; 3];
-        shares[at] = 1.0;
-        Nearest { shares, on: On::Corner(at) }
-    };
-    let side = |at: usize, share: f64| {
-        let mut shares = [0.0; 3];
-        (shares[at], shares[(at + 1) % 3]) = (1.0 - share, share);
-        Nearest { shares, on: On::Side(at) }
-    };
-    let (ab, ac) = (b - a, c - a);
-    let [from_a, from_b, from_c] = [a, b, c].map(|corner| point - corner);
-    let (a1, a2) = (ab.dot(from_a), ac.dot(from_a));
-    if a1 <= 0.0 && a2 <= 0.0 {
-        return corner(0);
-    }
-    let (b1, b2) = (ab.dot(from_b), ac.dot(from_b));
-    if b1 >= 0.0 && b2 <= b1 {
-        return corner(1);
-    }
-    let (c1, c2) = (ab.dot(from_c), ac.dot(from_c));
-    if c2 >= 0.0 && c1 <= c2 {
-        return corner(2);
-    }
-    let opposite_c = a1 * b2 - b1 * a2;
-    if opposite_c <= 0.0 && a1 >= 0.0 && b1 <= 0.0 {
-        return side(0, a1 / (a1 - b1));
-    }
-    let opposite_b = c1 * a2 - a1 * c2;
-    if opposite_b <= 0.0 && a2 >= 0.0 && c2 <= 0.0 {
-        return side(2, c2 / (c2 - a2));
-    }
-    let opposite_a = b1 * c2 - c1 * b2;
-    if opposite_a <= 0.0 && b2 >= b1 && c1 >= c2 {
-        return side(1, (b2 - b1) / ((b2 - b1) + (c1 - c2)));
-    }
-    let whole = opposite_a + opposite_b + opposite_c;
-    let (v, w) = (opposite_b / whole, opposite_c / whole);
-    Nearest { shares: [1.0 - v - w, v, w], on: On::Inside }
+pub(super) fn of_triangle(point: DVec3, corners: [DVec3; 3]) -> Nearest {
+    let lanes = |at: DVec3| at.to_array().map(One::splat);
+    let (shares, part) = in_triangle(lanes(point), corners.map(lanes));
+    Nearest { shares: shares.map(|share| share.to_array()[0]), on: On::of(part.to_array()[0]) }
 }
 
 /// The closest points of two segments: how far along each they are, from 0 to 1.
-pub(super) fn of_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [f64; 2] {
-    let (one, other, from) = (b - a, d - c, a - c);
-    let (aa, cc, ac) = (one.length_squared(), other.length_squared(), one.dot(other));
-    let (at_a, at_c) = (one.dot(from), other.dot(from));
-    if aa == 0.0 || cc == 0.0 {
-        let first = if aa == 0.0 { 0.0 } else { (-at_a / aa).clamp(0.0, 1.0) };
-        return [first, if cc == 0.0 { 0.0 } else { (at_c / cc).clamp(0.0, 1.0) }];
-    }
-    let sine = aa * cc - ac * ac;
-    let first = if sine > 0.0 { ((ac * at_c - at_a * cc) / sine).clamp(0.0, 1.0) } else { 0.0 };
-    let second = (ac * first + at_c) / cc;
-    match second {
-        ..0.0 => [(-at_a / aa).clamp(0.0, 1.0), 0.0],
-        1.0.. => [((ac - at_a) / aa).clamp(0.0, 1.0), 1.0],
-        _ => [first, second],
-    }
+pub(super) fn of_segments(one: [DVec3; 2], other: [DVec3; 2]) -> [f64; 2] {
+    let lanes = |at: DVec3| at.to_array().map(One::splat);
+    let [first, second, _] = along_segments(one.map(lanes), other.map(lanes));
+    [first, second].map(|share| share.to_array()[0])
 }
 
 /// Whether a way from a closest point leads away from the surface there: towards none of the `around` corners of the faces that meet at the

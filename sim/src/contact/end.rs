@@ -1,12 +1,12 @@
 //! What contact sees of the end of a step.
 
 use super::Impulses;
-use super::rule::Timing;
+use super::rule::{Motion, Moved, Timing};
 use crate::motion::Interval;
 use crate::state::Nodes;
 use glam::DVec3;
 
-/// The end of a step, as contact sees and changes it. Only the nodes of surfaces count.
+/// The end of a step, as contact sees and changes it: the nodes of surfaces, without gaps between their numbers.
 pub(crate) struct End<'a> {
     pub(crate) interval: Interval,
     /// At the start of the step.
@@ -18,4 +18,58 @@ pub(crate) struct End<'a> {
     pub(crate) changed: &'a mut Vec<u32>,
     /// Where impulses are added up, if anywhere.
     pub(crate) impulses: Option<&'a Impulses>,
+}
+
+/// The nodes of surfaces, and after them the points of obstacles, in a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ends {
+    /// Where they are at the start of the step (m).
+    pub(super) start: Vec<DVec3>,
+    /// Where they are at its end (m), and how they move there.
+    pub(super) position: Vec<DVec3>,
+    pub(super) motion: Vec<Motion>,
+    /// The nodes that grips hold, in rising order, each with its grip.
+    pub(super) held: Vec<[usize; 2]>,
+}
+
+impl Ends {
+    /// Takes the motion of nodes, and of points of obstacles, whose positions at the start and at the end are known.
+    pub(super) fn take(&mut self, inverse_mass: &[f64], end: &End<'_>) {
+        let Self { start, position, motion, held } = self;
+        motion.clear();
+        let velocities = end.before.velocity.iter().zip(&*end.velocity);
+        motion.extend(velocities.zip(inverse_mass).map(|((&before, &velocity), &inverse_mass)| {
+            let slowed = before - velocity;
+            Motion { velocity, slowed, inverse_mass, is_changed: false }
+        }));
+        let points = start.iter().zip(&*position).skip(inverse_mass.len());
+        motion.extend(points.map(|(&from, &to)| Motion::held((to - from) / end.interval.step)));
+        held.sort_unstable();
+        held.iter().for_each(|&[node, _]| motion[node].inverse_mass = 0.0);
+    }
+
+    /// Counts what contact has changed so far as a part of the step, before what is to come.
+    pub(super) fn go_on(&mut self, end: &End<'_>) {
+        for (motion, &before) in self.motion.iter_mut().zip(end.before.velocity).filter(|(motion, _)| motion.is_changed)
+        {
+            motion.slowed = before - motion.velocity;
+        }
+    }
+
+    /// What contact changes, and the nodes that grips hold.
+    pub(super) fn moved(&mut self, end: &End<'_>) -> (Moved<'_>, &[[usize; 2]]) {
+        let Self { position, motion, held, .. } = self;
+        (Moved { position, motion, step: end.interval.step, timing: end.timing }, held)
+    }
+
+    /// Writes the nodes that contact has changed.
+    pub(super) fn give(&self, end: &mut End<'_>) {
+        let all = self.position.iter().zip(&self.motion).zip(&mut *end.position).zip(&mut *end.velocity);
+        for (number, (((&at, motion), position), velocity)) in (0..).zip(all) {
+            if motion.is_changed {
+                (*position, *velocity) = (at, motion.velocity);
+                end.changed.push(number);
+            }
+        }
+    }
 }

@@ -1,6 +1,5 @@
 //! Boxes around points, and which of them are near each other.
 
-use super::places::Places;
 use super::surface::Surface;
 use glam::DVec3;
 
@@ -12,9 +11,9 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// The box around all points of a surface.
-    pub(super) fn of(surface: &Surface, at: &Places<'_>) -> Self {
-        Self::around(surface.nodes.iter().map(|&node| at.node(node)))
+    /// The box around all points of a surface, whose nodes are at these places (m).
+    pub(super) fn of(surface: &Surface, at: &[DVec3]) -> Self {
+        Self::around(surface.nodes.iter().map(|&node| at[node as usize]))
     }
 
     pub(super) fn around(points: impl Iterator<Item = DVec3>) -> Self {

@@ -1,7 +1,9 @@
 //! The closest points of two features, and whether contact counts there.
 
+use super::batch::{Found, PointsAndFacets, TwoEdges};
 use super::closest::{self, On};
 use super::surface::Surface;
+use crate::lanes::Set;
 use glam::DVec3;
 
 /// The kinds of features that meet.
@@ -57,13 +59,41 @@ pub(super) struct Closest {
 const LEVER: f64 = 6.0;
 
 impl Kind {
-    pub(super) const ALL: [Self; 3] = [Self::Point { of: 0 }, Self::Point { of: 1 }, Self::Edges];
+    /// Those that are resolved in the same pass.
+    pub(super) const POINTS: &[Self] = &[Self::Point { of: 0 }, Self::Point { of: 1 }];
+    pub(super) const EDGES: &[Self] = &[Self::Edges];
 
-    /// The closest points of two features. Those farther than `far` (m) from each other are no contact.
-    pub(super) fn closest(self, placed: [Placed<'_>; 2], is_same: bool, features: [u32; 2], far: f64) -> Closest {
+    /// Its number among the kinds.
+    pub(super) fn number(self) -> usize {
         match self {
-            Self::Point { of } => point_facet([placed[of], placed[1 - of]], features, of == 0, is_same),
-            Self::Edges => edges(placed, features, far),
+            Self::Point { of } => of,
+            Self::Edges => 2,
+        }
+    }
+
+    /// The closest points of pairs of features.
+    pub(super) fn find(self, placed: [Placed<'_>; 2], features: &[[u32; 2]], found: &mut Vec<Found>) {
+        found.clear();
+        let Self::Point { of } = self else {
+            return Set::best().run(TwoEdges { of: placed, features, found });
+        };
+        let of @ [one, other] = [placed[of], placed[1 - of]];
+        Set::best().run(PointsAndFacets { of, features, found });
+        for (found, &[point, facet]) in found.iter_mut().zip(features) {
+            // What lanes have found is of triangles.
+            match *other.used(facet) {
+                [a, b] => *found = Found::on_segment(one.point(point), [a, b].map(|end| other.point(end))),
+                [a] => *found = Found::on_segment(one.point(point), [a, a].map(|end| other.point(end))),
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether contact counts at the closest points of two features that are nearer to each other than what can touch.
+    pub(super) fn judge(self, placed: [Placed<'_>; 2], is_same: bool, features: [u32; 2], found: &Found) -> Closest {
+        match self {
+            Self::Point { of } => point_facet([placed[of], placed[1 - of]], features, of == 0, is_same, found),
+            Self::Edges => edges(placed, features, found),
         }
     }
 }
@@ -74,34 +104,34 @@ fn point_facet(
     [point, facet]: [u32; 2],
     counts_corners: bool,
     is_same: bool,
+    &Found { shares, part, way, .. }: &Found,
 ) -> Closest {
     let Placed { surface, .. } = other;
     let facet = &surface.facets[facet as usize];
-    let place = |corner: u32| other.point(corner);
-    let (here, corners) = (one.point(point), facet.corners.map(place));
-    let nearest = match facet.count {
-        3 => closest::of_triangle(here, corners),
-        2 => closest::of_segment(here, [corners[0], corners[1]]),
-        _ => closest::Nearest { shares: [1.0, 0.0, 0.0], on: On::Corner(0) },
-    };
-    let there: DVec3 = corners.iter().zip(nearest.shares).map(|(&corner, share)| corner * share).sum();
-    let way = here - there;
-    // How far the point has to move until another part of the facet is the nearest.
+    let (here, place) = (one.point(point), |corner: u32| other.point(corner));
+    let closest = |rests: f64| Closest { here, way, shares: [[1.0, 0.0, 0.0], shares], rests };
+    let on = On::of(part);
+    if on == On::Inside {
+        return closest(0.0);
+    }
+    let corners = facet.corners.map(place);
+    let there: DVec3 = corners.iter().zip(shares).map(|(&corner, share)| corner * share).sum();
+    // How far the point has to move until another part of the facet is the nearest. No way to a corner is towards the point.
     let leaves = |on: &[usize]| {
         let others = corners[..facet.count as usize].iter().enumerate().filter(|(corner, _)| !on.contains(corner));
-        let inwards = others.map(|(_, &corner)| -closest::along(way, corner - there));
-        on.iter()
-            .filter(|_| on.len() > 1)
-            .map(|&end| corners[end].distance(there))
-            .chain(inwards)
-            .fold(f64::INFINITY, f64::min)
+        let inwards = others.map(|(_, &corner)| {
+            let (along, squared) = (way.dot(corner - there).min(0.0), (corner - there).length_squared());
+            if squared > 0.0 { along * along / squared } else { 0.0 }
+        });
+        let ends = on.iter().filter(|_| on.len() > 1).map(|&end| corners[end].distance_squared(there));
+        ends.chain(inwards).fold(f64::INFINITY, f64::min).sqrt()
     };
     let rest = |counts: bool, around: &[u32], on: &[usize]| {
         let towards =
             if counts { closest::towards(way, there, around.iter().map(|&at| place(at))) } else { f64::INFINITY };
         if towards == 0.0 { 0.0 } else { (towards.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE) }
     };
-    let rests = match nearest.on {
+    closest(match on {
         On::Inside => 0.0,
         On::Side(side) => {
             let wings = &surface.wings[facet.sides[side] as usize];
@@ -112,36 +142,28 @@ fn point_facet(
             let is_first = counts_corners && (!is_same || (point as usize) < number);
             rest(is_first && facet.owns_corners[corner], &surface.rings[number], &[corner])
         }
-    };
-    Closest { here, way, shares: [[1.0, 0.0, 0.0], nearest.shares], rests }
+    })
 }
 
 /// Edges that cross each other.
-fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2], far: f64) -> Closest {
+fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2], found: &Found) -> Closest {
     /// The least squared sine of the angle between them: parallel edges meet with their ends.
     const LEAST_SINE: f64 = 1e-6;
+    let &Found { shares: [s, t, sine], way, .. } = found;
     let mine = one.surface.edges[first as usize].map(|end| one.point(end));
     let theirs = other.surface.edges[second as usize].map(|end| other.point(end));
-    let [s, t] = closest::of_segments(mine, theirs);
     let (here, there) = (mine[0].lerp(mine[1], s), theirs[0].lerp(theirs[1], t));
-    let way = here - there;
     let shares = [s, t].map(|share| [1.0 - share, share, 0.0]);
-    let closest = |rests: f64| Closest { here, way, shares, rests };
-    if way.length_squared() >= far * far {
-        return closest(0.0);
-    }
-    let along = [mine[1] - mine[0], theirs[1] - theirs[0]];
     let towards = |placed: Placed<'_>, edge: u32, from: DVec3, way: DVec3| {
         closest::towards(way, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
     };
-    let sine = along[0].cross(along[1]).length_squared() / (along[0].length_squared() * along[1].length_squared());
     let is_inside = |share: f64| share > 0.0 && share < 1.0;
     let beyond = if is_inside(s) && is_inside(t) && sine > LEAST_SINE {
         towards(one, first, here, -way).max(towards(other, second, there, way))
     } else {
         past_ends(mine, theirs, sine).max(f64::MIN_POSITIVE)
     };
-    closest(beyond / LEVER)
+    Closest { here, way, shares, rests: beyond / LEVER }
 }
 
 /// How far the ends of two segments have to move (m) until their lines are closest between them; zero if nearly parallel. `sine` is the squared

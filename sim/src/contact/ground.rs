@@ -2,11 +2,12 @@
 //!
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
-use super::end::End;
+use super::end::{End, Ends};
 use super::places::{ContactPoint, SLACK};
-use super::rule::{Law, Moved, Term, Touch};
+use super::rule::{Law, Motion, Term, Touch};
 use super::surface::Surface;
 use super::{Obstacle, Side, Source};
+use crate::motion::Interval;
 use crate::part::Part;
 use glam::DVec3;
 
@@ -78,14 +79,14 @@ impl Ground {
     }
 
     /// Lists the points that may touch the plane in a step, in order.
-    fn list(&mut self, surface: &Surface, end: &End<'_>, plane: Plane) {
+    fn list(&mut self, surface: &Surface, [start, end]: [&[DVec3]; 2], plane: Plane) {
         /// A share of the thickness, and of the way of a step.
         const SKIN: [f64; 2] = [20.0, 16.0];
         let Self { known: Near { points, heights, skin }, lever, law, obstacle, .. } = self;
         let height = |position: &[DVec3], node: u32| plane.above(position[node as usize]);
-        let (start, nodes) = (end.before.position, &surface.nodes);
+        let nodes = &surface.nodes;
         let far = |way: f64, now: f64, other: f64| way.max((now - other).abs());
-        let ahead = nodes.iter().fold(0.0, |way, &node| far(way, height(start, node), height(end.position, node)));
+        let ahead = nodes.iter().fold(0.0, |way, &node| far(way, height(start, node), height(end, node)));
         let since = nodes.iter().zip(&*heights).fold(0.0, |way, (&node, &then)| far(way, height(start, node), then));
         if obstacle.is_still() && !heights.is_empty() && *lever * (since + ahead) <= *skin {
             return;
@@ -100,18 +101,17 @@ impl Ground {
     }
 
     /// Adds the points that come nearer to the plane than the distance that is kept.
-    fn look(&mut self, surfaces: &[Surface], end: &End<'_>, touches: &mut Touches) {
-        let surface = &surfaces[self.body];
-        let plane = self.plane(end.interval.begin);
-        let [from, to] = [end.interval.begin, end.interval.end].map(|time| self.obstacle.pose(time));
-        self.list(surface, end, plane);
+    fn look(&mut self, surface: &Surface, [start, end]: [&[DVec3]; 2], interval: Interval, touches: &mut Touches) {
+        let plane = self.plane(interval.begin);
+        let [from, to] = [interval.begin, interval.end].map(|time| self.obstacle.pose(time));
+        self.list(surface, [start, end], plane);
         for &point in &self.known.points {
             let (nodes, weights) = surface.points.of(point as usize);
-            let here = surface.points.place(point as usize, end.before.position);
+            let here = surface.points.place(point as usize, start);
             let distance = plane.above(here);
             let foot = here - plane.normal * distance;
             let moved = to.apply(self.obstacle.pivot, from.undo(self.obstacle.pivot, foot));
-            let there = surface.points.place(point as usize, end.position);
+            let there = surface.points.place(point as usize, end);
             // Impulses at other points may press it down.
             let reserve = plane.normal.dot(there - here).abs();
             if plane.normal.dot(there - moved) >= self.law.gap + reserve {
@@ -120,10 +120,9 @@ impl Ground {
             let first = touches.terms.len() as u32;
             let own = nodes.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
             touches.terms.extend(own.map(|(&node, &weight)| Term { node, weight }));
-            let node = (end.position.len() + touches.feet[0].len()) as u32;
+            let node = (end.len() + touches.feet.len()) as u32;
             touches.terms.push(Term { node, weight: -1.0 });
-            touches.feet[0].push(moved);
-            touches.feet[1].push((moved - foot) / end.interval.step);
+            touches.feet.push((moved, Motion::held((moved - foot) / interval.step)));
             let terms = [first, touches.terms.len() as u32];
             touches.all.push((
                 [self.number, self.body],
@@ -147,8 +146,8 @@ struct Touches {
     /// With the numbers of the obstacle and of the body.
     all: Vec<([usize; 2], Law, Touch)>,
     terms: Vec<Term>,
-    /// The feet of the points at the end of the step (m), and their velocities (m/s).
-    feet: [Vec<DVec3>; 2],
+    /// The feet of the points at the end of the step (m).
+    feet: Vec<(DVec3, Motion)>,
 }
 
 impl Grounds {
@@ -170,7 +169,7 @@ impl Grounds {
         self.all.iter().try_fold(f64::INFINITY, |least, ground| Some(least.min(ground.clear(surfaces, position)?)))
     }
 
-    /// Adds the points of surfaces that touch half-spaces at a time (s), with positions of all nodes (m).
+    /// Adds the points of surfaces that touch half-spaces at a time (s), with positions of nodes (m).
     pub(super) fn points(&self, surfaces: &[Surface], position: &[DVec3], time: f64, found: &mut Vec<ContactPoint>) {
         for ground in &self.all {
             let (plane, points, from) =
@@ -181,41 +180,34 @@ impl Grounds {
         }
     }
 
-    /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points. `held` are the nodes that grips
-    /// hold, if impulses are asked for.
-    pub(super) fn resolve(
-        &mut self,
-        surfaces: &[Surface],
-        end: &mut End<'_>,
-        (inverse_mass, held): (&[f64], &[[usize; 2]]),
-        slowed: &[DVec3],
-        is_changed: &mut [bool],
-    ) {
+    /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points.
+    pub(super) fn resolve(&mut self, surfaces: &[Surface], end: &End<'_>, ends: &mut Ends) {
         let Self { all, touches } = self;
         touches.all.clear();
         touches.terms.clear();
-        touches.feet.iter_mut().for_each(Vec::clear);
-        all.iter_mut().for_each(|ground| ground.look(surfaces, end, touches));
-        let [feet, speed] = &touches.feet;
-        let End { interval, position, velocity, timing, changed, impulses, .. } = end;
-        let (obstacles, step, timing) = ([&feet[..], &speed[..]], interval.step, *timing);
-        let second = position.len() as u32;
-        let mut nodes =
-            Moved { inverse_mass, position, velocity, slowed, obstacles, step, timing, is_changed, changed };
+        touches.feet.clear();
+        let places = [&ends.start[..], &ends.position];
+        all.iter_mut().for_each(|ground| ground.look(&surfaces[ground.body], places, end.interval, touches));
+        let count = ends.position.len();
+        ends.position.extend(touches.feet.iter().map(|(foot, _)| foot));
+        ends.motion.extend(touches.feet.iter().map(|(_, motion)| motion));
+        let (mut nodes, held) = ends.moved(end);
         for &([obstacle, body], law, ref touch) in &touches.all {
             let [first, last] = touch.terms.map(|at| at as usize);
             let terms = &touches.terms[first..last];
-            match impulses {
+            match end.impulses {
                 None => drop(nodes.resolve(law, touch, terms)),
                 Some(impulses) => {
-                    let told = nodes.resolve_and_tell(law, touch, terms, second);
+                    let told = nodes.resolve_and_tell(law, touch, terms, count as u32);
                     let Some(([on, _], impulse)) = told else { continue };
-                    impulses.feel_surface(interval.end, Source::Obstacle(obstacle), body, on);
+                    impulses.feel_surface(end.interval.end, Source::Obstacle(obstacle), body, on);
                     for (grip, _, changes) in nodes.holding(held, terms, impulse) {
-                        impulses.feel_surface(interval.end, Source::Grip(grip), body, changes);
+                        impulses.feel_surface(end.interval.end, Source::Grip(grip), body, changes);
                     }
                 }
             }
         }
+        ends.position.truncate(count);
+        ends.motion.truncate(count);
     }
 }

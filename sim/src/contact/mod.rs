@@ -4,8 +4,8 @@
 //! surfaces meet ([`Stage`]), by the rule in [`rule`]. Half-spaces are met by nodes, or by the points of a carried surface, all else by
 //! surfaces, unless a world has no [`Contacts`].
 
+mod batch;
 mod bound;
-mod candidates;
 mod closest;
 mod cross;
 mod end;
@@ -14,6 +14,8 @@ mod features;
 mod ground;
 mod impulses;
 mod inside;
+mod lanewise;
+mod near;
 mod obstacle;
 mod overlap;
 mod pair;
@@ -25,7 +27,10 @@ mod rule;
 mod separate;
 mod shape;
 mod shown;
+mod sleepers;
+mod spread;
 mod stage;
+mod step;
 mod surface;
 mod touches;
 

@@ -4,7 +4,6 @@ use super::cross::{Corners, near_facets};
 use super::extent::Extent;
 use super::features::Placed;
 use super::inside::inside;
-use super::places::Places;
 use super::shape::ROUND_OFF;
 use super::surface::Surface;
 use super::{Contacts, Obstacle, Side};
@@ -152,13 +151,8 @@ impl Surfaces {
             let pose = obstacle.pose(time);
             points.iter().map(move |&point| pose.apply(obstacle.pivot, point))
         });
-        let solids: Vec<_> = solids.collect();
-        let places = Places { nodes: position, obstacles: &solids };
-        let at: Vec<Vec<DVec3>> = self
-            .surfaces
-            .iter()
-            .map(|surface| (0..surface.points.len() as u32).map(|point| places.point(&surface.points, point)).collect())
-            .collect();
+        let nodes: Vec<_> = position.iter().copied().chain(solids).collect();
+        let at: Vec<Vec<DVec3>> = self.surfaces.iter().map(|surface| surface.places(&nodes).collect()).collect();
         let extents = at.iter().map(|points| Extent::around(points.iter().copied())).collect();
         Moment { at, extents }
     }

@@ -1,10 +1,11 @@
 //! Two surfaces that may meet: lists of their features that are near each other, and which of them touch in a step.
 
-use super::candidates::Candidates;
+use super::batch::Found;
 use super::extent::{Extent, near, sweep};
 use super::features::{Kind, Placed};
 use super::rule::Law;
 use super::shown::{Seen, Shown};
+use super::sleepers::Sleepers;
 use super::surface::Surface;
 use super::touches::{Sides, Touches};
 
@@ -18,20 +19,53 @@ pub(super) struct Pair {
     way: f64,
     /// Up to which way the lists hold all that can touch; `None` before they are made.
     until: Option<f64>,
+    /// How far they move relative to each other in this step (m).
+    ahead: f64,
     candidates: [Candidates; 3],
-    /// What touches in this step.
+    pub(super) look: Look,
+}
+
+/// Features of two surfaces, in their order, that may touch, and from which way on each two are looked at.
+#[derive(Clone, Debug, Default)]
+struct Candidates {
+    features: Vec<[u32; 2]>,
+    wakes: Sleepers,
+}
+
+impl Candidates {
+    /// Takes others, which are all awake.
+    fn renew(&mut self, features: &[[u32; 2]]) {
+        self.features.clear();
+        self.features.extend_from_slice(features);
+        self.wakes.renew(features.len());
+    }
+}
+
+/// The candidates of a pair that are looked at, by their numbers in a list and their features, with their closest points, and those of
+/// them that touch. Pairs lend it to each other, so that it stays in the caches.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Look {
+    awake: Vec<u32>,
+    features: Vec<[u32; 2]>,
+    found: Vec<Found>,
     pub(super) touches: Touches,
 }
 
 impl Pair {
     pub(super) fn new(of: [usize; 2], law: Law) -> Self {
-        Self { of, law, way: 0.0, until: None, candidates: Default::default(), touches: Touches::default() }
+        Self { of, law, way: 0.0, until: None, ahead: 0.0, candidates: Default::default(), look: Look::default() }
     }
 
-    /// Adds the way since the last step (m). The lists are made anew if features that are not in them might touch in this one,
-    /// in which points move relative to each other by `ahead` (m).
-    pub(super) fn go(&mut self, seen: &Seen<'_>, way: f64, ahead: f64) {
-        self.way += way;
+    /// Goes on to this step. The lists are made anew if features that are not in them might touch in it.
+    pub(super) fn go(&mut self, seen: &Seen<'_>) {
+        let [one, other] = self.of.map(|surface| &seen.start[surface]);
+        self.way += one.since.relative(other.since);
+        self.reach(seen, one.ahead.relative(other.ahead));
+    }
+
+    /// Sees to it that the lists hold all that can touch where points move relative to each other by `ahead` (m).
+    pub(super) fn reach(&mut self, seen: &Seen<'_>, ahead: f64) {
+        self.ahead = ahead;
         let needed = self.way + 2.0 * ahead;
         if self.until.is_none_or(|until| needed > until) {
             self.list(seen, ahead);
@@ -45,7 +79,7 @@ impl Pair {
         let [one, other] = self.of.map(|surface| seen.placed(surface));
         let skin = (SKIN[0] * (one.surface.thickness + other.surface.thickness)).max(SKIN[1] * ahead);
         let reach = self.law.gap + skin;
-        self.candidates.iter_mut().for_each(|list| list.renew(std::iter::empty()));
+        self.candidates.iter_mut().for_each(|list| list.renew(&[]));
         let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.iter().copied()));
         let apart = mine.distance(&theirs);
         if apart >= reach && self.of[0] != self.of[1] {
@@ -64,7 +98,7 @@ impl Pair {
         };
         let [of_one, of_other] = [lists(one), lists(other)];
         let axes = common.longest_axes();
-        for (at, kind) in Kind::ALL.into_iter().enumerate() {
+        for (at, &kind) in Kind::POINTS.iter().chain(Kind::EDGES).enumerate() {
             let sides = match kind {
                 Kind::Point { of: 0 } => [&of_one[0], &of_other[1]],
                 // A surface meets itself only once.
@@ -76,55 +110,69 @@ impl Pair {
             sweep(sides, reach, axes, |features| found.push(features));
             if self.of[0] == self.of[1] {
                 let mut at = Shown::default();
-                at.place(one.surface, &seen.rest);
+                at.place(one.surface, seen.rest);
                 let rest = Placed { surface: one.surface, at: &at.points };
-                found.retain(|&features| is_apart_at_rest(rest, kind, features, 2.0 * self.law.gap));
+                found.retain(|&features| is_free(one.surface, kind, features));
+                kind.find([rest; 2], &found, &mut self.look.found);
+                let mut far = self.look.found.iter().map(|found| found.distance > 2.0 * self.law.gap);
+                found.retain(|_| far.next() == Some(true));
             }
             found.sort_unstable();
-            self.candidates[at].renew(found.into_iter());
+            self.candidates[at].renew(&found);
         }
     }
 
-    /// Finds what touches in this step.
-    pub(super) fn look(&mut self, seen: &Seen<'_>, ahead: f64) {
-        let Self { of, law, way, candidates, touches, .. } = self;
+    /// Finds what touches in this step, of some kinds of features.
+    pub(super) fn look(&mut self, kinds: &[Kind], seen: &Seen<'_>) {
+        let Self { of, law, way, ahead, candidates, look, .. } = self;
+        let Look { awake, features, found, touches } = look;
         touches.clear();
         let (placed, is_same) = (of.map(|surface| seen.placed(surface)), of[0] == of[1]);
         let shown = of.map(|surface| &seen.start[surface]);
-        let (due, far) = (*way + 2.0 * ahead, law.gap + 2.0 * ahead);
-        for (kind, list) in Kind::ALL.into_iter().zip(candidates) {
+        let (due, far) = (*way + 2.0 * *ahead, law.gap + 2.0 * *ahead);
+        for &kind in kinds {
+            let Candidates { features: all, wakes } = &mut candidates[kind.number()];
             let sides = Sides { kind, of: *of, seen };
-            list.for_each_awake(due, |features| {
+            wakes.awake(due, awake);
+            if kind == Kind::Edges {
                 // Points and facets meet where two edges are flat.
-                let flat = (kind == Kind::Edges).then(|| [0, 1].map(|side| shown[side].stays_flat(features[side])));
-                if let Some([Some(one), Some(other)]) = flat {
-                    return *way + one.min(other).max(f64::MIN_POSITIVE);
-                }
-                let closest = kind.closest(placed, is_same, features, far);
-                let distance = closest.way.length();
+                awake.retain(|&at| {
+                    let features = all[at as usize];
+                    let [one, other] = [0, 1].map(|side| shown[side].stays_flat(features[side]));
+                    let (Some(one), Some(other)) = (one, other) else { return true };
+                    wakes.sleep(at, *way + one.min(other).max(f64::MIN_POSITIVE));
+                    false
+                });
+            }
+            features.clear();
+            features.extend(awake.iter().map(|&at| all[at as usize]));
+            kind.find(placed, features, found);
+            for ((&at, &features), found) in awake.iter().zip(&*features).zip(&*found) {
+                let distance = found.distance;
+                let closest = kind.judge(placed, is_same, features, found);
                 if distance >= far || closest.rests > 0.0 {
-                    return *way + closest.rests.max(distance - law.gap);
+                    wakes.sleep(at, *way + closest.rests.max(distance - law.gap));
+                    continue;
                 }
                 if distance > 0.0 {
                     touches.push(&sides, features, &closest);
                 }
-                f64::NEG_INFINITY
-            });
+                wakes.sleep(at, f64::NEG_INFINITY);
+            }
         }
     }
 }
 
-/// Whether two features of a surface share no node and are at rest farther from each other than a distance (m).
-fn is_apart_at_rest(rest: Placed<'_>, kind: Kind, [first, second]: [u32; 2], far: f64) -> bool {
+/// Whether two features of a surface share no node. Pairs of edges count once.
+fn is_free(surface: &Surface, kind: Kind, [first, second]: [u32; 2]) -> bool {
     if kind == Kind::Edges && first >= second {
         return false;
     }
-    let Surface { points, facets, edges, .. } = rest.surface;
+    let Surface { points, facets, edges, .. } = surface;
     let (mine, theirs) = match kind {
         Kind::Edges => (&edges[first as usize][..], &edges[second as usize][..]),
         Kind::Point { .. } => (std::slice::from_ref(&first), facets[second as usize].used()),
     };
     let nodes = |of| <[u32]>::iter(of).flat_map(|&point| points.of(point as usize).0);
-    let is_joined = nodes(mine).any(|node| nodes(theirs).any(|other| node == other));
-    !is_joined && kind.closest([rest; 2], true, [first, second], f64::INFINITY).way.length() > far
+    !nodes(mine).any(|node| nodes(theirs).any(|other| node == other))
 }

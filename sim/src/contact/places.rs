@@ -1,30 +1,7 @@
-//! Where nodes and points of obstacles are, and where bodies touch.
+//! Where bodies touch.
 
 use super::Side;
-use crate::carried::Weights;
 use glam::DVec3;
-
-/// Nodes and points of obstacles, numbered after them.
-#[derive(Clone, Copy)]
-pub(super) struct Places<'a> {
-    pub(super) nodes: &'a [DVec3],
-    pub(super) obstacles: &'a [DVec3],
-}
-
-impl Places<'_> {
-    pub(super) fn node(&self, node: u32) -> DVec3 {
-        let node = node as usize;
-        if node < self.nodes.len() { self.nodes[node] } else { self.obstacles[node - self.nodes.len()] }
-    }
-
-    /// A point as the weighted mean of its nodes.
-    pub(super) fn point(&self, points: &Weights, point: u32) -> DVec3 {
-        match points.of(point as usize) {
-            (&[node], _) => self.node(node),
-            (nodes, weights) => nodes.iter().zip(weights).map(|(&node, &weight)| self.node(node) * weight).sum(),
-        }
-    }
-}
 
 /// A place where a body touches an obstacle, another body or itself.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Distances beside an independent evaluation, and the rule beside the exact truth of moving features.
 
 use super::closest::{of_segments, of_triangle};
-use super::rule::{Law, Moved, Term, Timing, Touch};
+use super::rule::{Law, Motion, Moved, Term, Timing, Touch};
 use glam::DVec3;
 
 /// Numbers from −1 to 1 that look random.
@@ -111,18 +111,9 @@ impl Features {
         }
         let law = Law { gap: 0.05 * from[2].distance(from[3]), restitution: 0.0, friction: 0.0 };
         let touch = Touch { normal: way / distance, distance, drag: DVec3::ZERO, terms: [0, 4] };
-        let (mut position, mut velocity) = (to, [0, 1, 2, 3].map(|at| to[at] - from[at]));
-        let mut moved = Moved {
-            inverse_mass: &[1.0; 4],
-            position: &mut position,
-            velocity: &mut velocity,
-            slowed: &[DVec3::ZERO; 4],
-            obstacles: [&[], &[]],
-            step: 1.0,
-            timing: Timing::End,
-            is_changed: &mut [false; 4],
-            changed: &mut Vec::new(),
-        };
+        let mut position = to;
+        let mut motion = [0, 1, 2, 3].map(|at| Motion { inverse_mass: 1.0, ..Motion::held(to[at] - from[at]) });
+        let mut moved = Moved { position: &mut position, motion: &mut motion, step: 1.0, timing: Timing::End };
         moved.resolve(law, &touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));
         Some(position)
     }

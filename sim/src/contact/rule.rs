@@ -59,37 +59,48 @@ pub(super) struct Touch {
     pub(super) terms: [u32; 2],
 }
 
-/// Where nodes are when a stage of contact changes them.
+/// How a node moves at the end of a step: what contact reads only of those that come near enough, in one line of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Motion {
+    /// At the end of the step (m/s).
+    pub(super) velocity: DVec3,
+    /// The velocity at the start of the step minus that at its end, before contact (m/s).
+    pub(super) slowed: DVec3,
+    /// 1/m (1/kg), zero for nodes that are held and points of obstacles.
+    pub(super) inverse_mass: f64,
+    /// Whether contact has changed it.
+    pub(super) is_changed: bool,
+}
+
+impl Motion {
+    /// That of a point with a velocity (m/s) that contact cannot change.
+    pub(super) fn held(velocity: DVec3) -> Self {
+        Self { velocity, slowed: DVec3::ZERO, inverse_mass: 0.0, is_changed: false }
+    }
+}
+
+/// Nodes of surfaces and points of obstacles at the end of a step, which contact changes.
 pub(super) struct Moved<'a> {
-    /// 1/m of each node (1/kg), zero for those that are held.
-    pub(super) inverse_mass: &'a [f64],
+    /// Where they are (m).
     pub(super) position: &'a mut [DVec3],
-    pub(super) velocity: &'a mut [DVec3],
-    /// The velocities at the start of the step minus those at its end, before contact (m/s).
-    pub(super) slowed: &'a [DVec3],
-    /// Positions (m) and velocities (m/s) of the points of obstacles, whose numbers follow those of nodes.
-    pub(super) obstacles: [&'a [DVec3]; 2],
+    pub(super) motion: &'a mut [Motion],
     /// ΔT (s).
     pub(super) step: f64,
     pub(super) timing: Timing,
-    /// Whether each node has been changed, and those that have.
-    pub(super) is_changed: &'a mut [bool],
-    pub(super) changed: &'a mut Vec<u32>,
 }
 
 impl Moved<'_> {
     fn place(&self, node: u32) -> DVec3 {
-        let node = node as usize;
-        self.position.get(node).copied().unwrap_or_else(|| self.obstacles[0][node - self.position.len()])
+        self.position[node as usize]
     }
 
     fn speed(&self, node: u32) -> DVec3 {
-        let node = node as usize;
-        self.velocity.get(node).copied().unwrap_or_else(|| self.obstacles[1][node - self.velocity.len()])
+        self.motion[node as usize].velocity
     }
 
     fn mobility(&self, node: u32) -> f64 {
-        self.inverse_mass.get(node as usize).copied().unwrap_or(0.0)
+        self.motion[node as usize].inverse_mass
     }
 
     /// Momentum (kg m/s) and angular momentum about the origin (kg m²/s) of the nodes of a pair that are free, on each of its sides: those
@@ -141,31 +152,21 @@ impl Moved<'_> {
         })
     }
 
-    /// Notes that a node is changed.
-    fn mark(&mut self, node: u32) {
-        if !std::mem::replace(&mut self.is_changed[node as usize], true) {
-            self.changed.push(node);
-        }
-    }
-
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.
     pub(super) fn resolve(&mut self, law: Law, touch: &Touch, terms: &[Term]) -> DVec3 {
         let (Law { gap, restitution, friction }, Touch { normal, distance, drag, .. }) = (law, *touch);
-        let (mut way, mut speed) = (DVec3::ZERO, DVec3::ZERO);
-        for &Term { node, weight } in terms {
-            way += self.place(node) * weight;
-            speed += self.speed(node) * weight;
-        }
+        let way: DVec3 = terms.iter().map(|&Term { node, weight }| self.place(node) * weight).sum();
         let reached = normal.dot(way);
         if reached >= gap {
             return DVec3::ZERO;
         }
-        let (mut mobility, mut is_free, mut slowed) = (0.0, true, DVec3::ZERO);
+        let (mut mobility, mut is_free, mut speed, mut slowed) = (0.0, true, DVec3::ZERO, DVec3::ZERO);
         for &Term { node, weight } in terms {
-            let own = self.mobility(node);
-            mobility += weight * weight * own;
-            is_free &= own > 0.0;
-            slowed += self.slowed.get(node as usize).map_or(DVec3::ZERO, |&slowed| slowed * weight);
+            let own = &self.motion[node as usize];
+            mobility += weight * weight * own.inverse_mass;
+            is_free &= own.inverse_mass > 0.0;
+            speed += own.velocity * weight;
+            slowed += own.slowed * weight;
         }
         if mobility == 0.0 {
             return DVec3::ZERO;
@@ -185,11 +186,12 @@ impl Moved<'_> {
         let impulse = (normal * kick - slip * hold) / mobility;
         let out = normal * (short / mobility);
         for &Term { node, weight } in terms {
-            let share = weight * self.mobility(node);
+            let own = &mut self.motion[node as usize];
+            let share = weight * own.inverse_mass;
             if share != 0.0 {
-                self.velocity[node as usize] += impulse * share;
+                own.velocity += impulse * share;
+                own.is_changed = true;
                 self.position[node as usize] += (impulse * self.step + out) * share;
-                self.mark(node);
             }
         }
         if self.timing == Timing::End && is_free {
@@ -233,8 +235,9 @@ impl Moved<'_> {
         };
         for &Term { node, .. } in terms {
             let arm = self.place(node) - centre;
-            self.velocity[node as usize] -= spin.cross(arm);
-            self.mark(node);
+            let own = &mut self.motion[node as usize];
+            own.velocity -= spin.cross(arm);
+            own.is_changed = true;
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Surfaces at the start of a step: the places of their points, and which of their edges are flat.
 
 use super::features::Placed;
-use super::places::Places;
+use super::near::Way;
+use super::sleepers::Sleepers;
 use super::surface::Surface;
 use glam::DVec3;
 
@@ -10,48 +11,49 @@ use glam::DVec3;
 pub(super) struct Shown {
     /// The places of its points (m); empty if it is in no pair.
     pub(super) points: Vec<DVec3>,
-    /// The way that its points have moved relative to each other, at most (m).
+    /// How far its points have moved since the last step, and in this one.
+    pub(super) since: Way,
+    pub(super) ahead: Way,
+    /// The way that they have moved relative to each other, at most (m).
     way: f64,
     /// For each edge, from which way on it may be flat or not otherwise than before (m).
-    wakes: Vec<f64>,
+    wakes: Sleepers,
     is_flat: Vec<bool>,
+    /// Those that are looked at in this step.
+    awake: Vec<u32>,
 }
 
 impl Shown {
-    /// Adds the way since the last step (m).
-    pub(super) fn go(&mut self, way: f64) {
+    /// Adds what nodes have moved from their places at the start of the last step to those of this one, and sees where they go in it (m).
+    pub(super) fn go(&mut self, [last, start, end]: [&[DVec3]; 3]) {
         self.points.clear();
-        self.way += way;
+        (self.since, self.ahead) = (Way::of(last, start), Way::of(start, end));
+        self.way += self.since.spread;
     }
 
-    /// Forgets what was known of edges.
-    pub(super) fn forget(&mut self) {
-        self.wakes.clear();
-        self.is_flat.clear();
-    }
-
-    /// Takes the places of this step.
-    pub(super) fn place(&mut self, surface: &Surface, at: &Places<'_>) {
-        if !self.points.is_empty() {
-            return;
+    /// Takes the places of this step, from those of nodes (m).
+    pub(super) fn place(&mut self, surface: &Surface, nodes: &[DVec3]) {
+        let Self { points, way, wakes, is_flat, awake, .. } = self;
+        points.extend(surface.places(nodes));
+        if is_flat.len() != surface.edges.len() {
+            is_flat.resize(surface.edges.len(), false);
+            wakes.renew(surface.edges.len());
         }
-        let Self { points, way, wakes, is_flat } = self;
-        points.extend((0..surface.points.len() as u32).map(|point| at.point(&surface.points, point)));
-        wakes.resize(surface.edges.len(), f64::NEG_INFINITY);
-        is_flat.resize(surface.edges.len(), false);
-        for (edge, wake) in wakes.iter_mut().enumerate().filter(|(_, wake)| **wake <= *way) {
-            let place = |point: u32| points[point as usize];
-            let bend = bend(surface.edges[edge].map(place), surface.wings[edge].iter().map(|&corner| place(corner)));
+        wakes.awake(*way, awake);
+        for &edge in &*awake {
+            let (number, place) = (edge as usize, |point: u32| points[point as usize]);
+            let wings = surface.wings[number].iter().map(|&corner| place(corner));
+            let bend = bend(surface.edges[number].map(place), wings);
             let stays;
-            (is_flat[edge], stays) = bend
+            (is_flat[number], stays) = bend
                 .map_or((false, f64::INFINITY), |(sine, height)| (sine < BEND, (sine - BEND).abs() * height / LEVER));
-            *wake = *way + stays;
+            wakes.sleep(edge, *way + stays);
         }
     }
 
     /// The way of its points (m) for which an edge stays flat; `None` if it is not.
     pub(super) fn stays_flat(&self, edge: u32) -> Option<f64> {
-        self.is_flat[edge as usize].then(|| self.wakes[edge as usize] - self.way)
+        self.is_flat[edge as usize].then(|| self.wakes.wake(edge) - self.way)
     }
 }
 
@@ -60,7 +62,7 @@ impl Shown {
 pub(super) struct Seen<'a> {
     pub(super) surfaces: &'a [Surface],
     /// Nodes at rest (m), for bodies that meet themselves.
-    pub(super) rest: Places<'a>,
+    pub(super) rest: &'a [DVec3],
     /// The surfaces at the start of the step; of those in pairs.
     pub(super) start: &'a [Shown],
     /// See [`Touch::drag`](super::rule::Touch::drag): for a surface, a point on its axis (m), and the way from there to its surface (m).

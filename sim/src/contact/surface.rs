@@ -3,12 +3,14 @@
 //! Points are nodes, middles of faces with more than three corners, or points of a carried surface. Facets are triangles in space, the
 //! ends of bars, and sides in the plane. A face of more corners is a fan of triangles around its middle.
 
+use super::spread::Spread;
 use crate::body::Body;
 use crate::carried::{Carried, Weights};
 use crate::element::{Dimension, ElementKind, around, ordered};
 use crate::lists::IndexLists;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The features of a surface. Edges are those along which faces meet, without bars in the plane.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +27,9 @@ pub(crate) struct Surface {
     pub(super) rings: IndexLists,
     /// The nodes, each once.
     pub(super) nodes: Vec<u32>,
+    /// How facets and edges follow the nodes, in surfaces that are [ready](Self::ready).
+    pub(super) of_facets: Spread,
+    pub(super) of_edges: Spread,
     /// The facets that bound an inside, with their normals out of it: not those of cloths and bars.
     pub(super) bounding: Vec<u32>,
     /// Half of the distance (m) that is kept from a surface of the same thickness.
@@ -170,10 +175,42 @@ impl Surface {
             wings: lists(&wings),
             rings: lists(&rings),
             nodes,
+            of_facets: Spread::default(),
+            of_edges: Spread::default(),
             bounding: Vec::new(),
             thickness: 0.0,
             is_round: false,
         }
+    }
+
+    /// The places of its points (m), from those of nodes.
+    pub(super) fn places(&self, nodes: &[DVec3]) -> impl Iterator<Item = DVec3> {
+        (0..self.points.len()).map(|point| self.points.place(point, nodes))
+    }
+
+    /// The same surface with its nodes numbered from `first` on, without gaps.
+    pub(super) fn numbered(self, first: u32) -> Self {
+        let number = |node: &u32| first + self.nodes.partition_point(|other| other < node) as u32;
+        let mut points = Weights::default();
+        for point in 0..self.points.len() {
+            let (nodes, weights) = self.points.of(point);
+            points.push(&nodes.iter().map(number).collect::<Vec<_>>(), weights);
+        }
+        let nodes = (first..).take(self.nodes.len()).collect();
+        Self { points, nodes, ..self }
+    }
+
+    /// The same surface with all that steps of contact need.
+    pub(super) fn ready(self) -> Self {
+        let of_facets = Spread::new(&self.points, self.facets.iter().map(Facet::used));
+        let of_edges = Spread::new(&self.points, self.edges.iter().map(<[u32; 2]>::as_slice));
+        Self { of_facets, of_edges, ..self }
+    }
+
+    /// Its nodes among those that are numbered without gaps.
+    pub(super) fn range(&self) -> Range<usize> {
+        let first = self.nodes.first().map_or(0, |&node| node as usize);
+        first..first + self.nodes.len()
     }
 
     /// The mean length of its edges, or of its facets where it has none (m), with points at the given places.

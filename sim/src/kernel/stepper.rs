@@ -139,6 +139,14 @@ pub(crate) trait Stepper: Send + Sync {
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]);
     /// The position (m) and velocity (m/s) of a node.
     fn node(&mut self, node: usize) -> (DVec3, DVec3);
+    /// Appends the positions and velocities of some nodes of the body, whose first node has the number `first` there.
+    fn read_some(&mut self, some: &[u32], first: usize, state: &mut State) {
+        for &node in some {
+            let (position, velocity) = self.node(node as usize - first);
+            state.position.push(position);
+            state.velocity.push(velocity);
+        }
+    }
     /// Sets the position and velocity of a node.
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3);
     /// Sets the positions (m) and velocities (m/s) of all nodes.
@@ -239,10 +247,12 @@ pub(crate) struct Rollback {
     steps: u64,
     /// The number of steps of the copy, if steps since then may be repeated.
     kept: Option<u64>,
-    /// The nodes of all parts before and after contact.
+    /// The nodes that may meet, before and after a step.
     buffers: [State; 2],
-    /// The nodes that contact has changed.
+    /// The numbers among them of those that contact has changed.
     changed: Vec<u32>,
+    /// Places of all nodes (m), of which those with loads are up to date.
+    loaded: Vec<DVec3>,
 }
 
 impl Rollback {
@@ -251,9 +261,8 @@ impl Rollback {
 
     /// Parts in the order of their nodes.
     pub(crate) fn new(parts: Vec<PartStepper>, scheme: Scheme) -> Self {
-        let count = parts.last().map_or(0, |part| part.nodes.end);
-        let buffers = [(); 2].map(|()| State::at_rest(vec![DVec3::ZERO; count]));
-        Self { parts, scheme, steps: 0, kept: None, buffers, changed: Vec::new() }
+        let buffers = [(); 2].map(|()| State::default());
+        Self { parts, scheme, steps: 0, kept: None, buffers, changed: Vec::new(), loaded: Vec::new() }
     }
 
     /// Reads a state after `steps` steps.
@@ -402,8 +411,11 @@ impl Rollback {
                 if is_read { std::mem::swap(before, after) } else { self.read(nodes, before) }
             }
             if let Some(push) = around.push {
-                self.read(around.work.map_or(&[], |work| work.nodes()), after);
-                push(number, shares[0], &after.position, &mut forces);
+                self.loaded.resize(count, DVec3::ZERO);
+                for node in around.work.map_or(&[][..], |work| work.nodes()).iter().map(|&node| node as usize) {
+                    self.loaded[node] = self.node(node).0;
+                }
+                push(number, shares[0], &self.loaded, &mut forces);
             }
             let around = if around.push.is_some() { &Around { forces: forces.columns(), ..*around } } else { around };
             lost = self.each(crew, |part, crew| {
@@ -417,7 +429,7 @@ impl Rollback {
                 self.read(nodes, after);
                 changed.clear();
                 meet(number, before.nodes(), after, &mut changed);
-                self.write(&changed, after);
+                self.write(nodes, &changed, after);
                 is_read = true;
             } else {
                 is_read = false;
@@ -460,21 +472,22 @@ impl Rollback {
 
     /// Reads some nodes, which are sorted.
     fn read(&mut self, mut some: &[u32], state: &mut State) {
+        state.position.clear();
+        state.velocity.clear();
         for PartStepper { stepper, nodes, .. } in &mut self.parts {
             let (own, others) = some.split_at(some.partition_point(|&node| (node as usize) < nodes.end));
-            for node in own.iter().map(|&node| node as usize) {
-                (state.position[node], state.velocity[node]) = stepper.node(node - nodes.start);
-            }
+            stepper.read_some(own, nodes.start, state);
             some = others;
         }
     }
 
-    /// Writes some nodes.
-    fn write(&mut self, some: &[u32], state: &State) {
-        for node in some.iter().map(|&node| node as usize) {
+    /// Writes those of some nodes that have changed, by their numbers among them.
+    fn write(&mut self, some: &[u32], changed: &[u32], state: &State) {
+        for &number in changed {
+            let (node, number) = (some[number as usize] as usize, number as usize);
             let part = self.parts.partition_point(|part| part.nodes.end <= node);
             let PartStepper { stepper, nodes, .. } = &mut self.parts[part];
-            stepper.set_node(node - nodes.start, state.position[node], state.velocity[node]);
+            stepper.set_node(node - nodes.start, state.position[number], state.velocity[number]);
         }
     }
 }

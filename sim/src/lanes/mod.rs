@@ -183,6 +183,9 @@ pub trait Lanes:
     const ALL: u32 = (1 << Self::WIDTH) - 1;
 }
 
+/// A single number, for what is computed for one element alone.
+pub(crate) type One = portable::Vector;
+
 /// A computation that can be compiled for the lanes of each set.
 pub(crate) trait Work {
     /// Its result.

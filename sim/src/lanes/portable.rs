@@ -7,7 +7,7 @@ use std::array::from_fn;
 const N: usize = 1;
 
 #[derive(Clone, Copy)]
-pub(super) struct Vector([f64; N]);
+pub(crate) struct Vector([f64; N]);
 
 operators! { Vector,
     Add add (a, b) from_fn(|at| a[at] + b[at]);

@@ -1,0 +1,115 @@
+//! Which surfaces may meet: those that are near each other, and for how many steps none are.
+
+use super::extent::Extent;
+use super::pair::Pair;
+use super::rule::Law;
+use super::stage::Stage;
+use super::step::Known;
+use crate::motion::Interval;
+use crate::state::Nodes;
+use glam::DVec3;
+use std::sync::PoisonError;
+
+/// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Way {
+    pub(super) drift: DVec3,
+    pub(super) spread: f64,
+}
+
+impl Way {
+    /// That of points from places to others.
+    pub(super) fn of(from: &[DVec3], to: &[DVec3]) -> Self {
+        let by = from.iter().zip(to).map(|(&from, &to)| to - from);
+        // Any vector will do: the nearer it is to the mean, the less is left.
+        let some = by.clone().step_by(from.len().div_ceil(8).max(1));
+        let count = some.len().max(1) as f64;
+        let drift = some.sum::<DVec3>() / count;
+        let far = by.map(|by| by.distance_squared(drift)).fold(0.0, |most, far| if far > most { far } else { most });
+        Self { drift, spread: far.sqrt() }
+    }
+
+    pub(super) fn relative(self, other: Self) -> f64 {
+        (self.drift - other.drift).length() + self.spread + other.spread
+    }
+
+    pub(super) fn length(self) -> f64 {
+        self.drift.length() + self.spread
+    }
+}
+
+impl Stage {
+    /// Chooses the pairs of surfaces that are near each other, and returns the way (m) of any two until others may meet.
+    pub(super) fn choose(&self, at: &[DVec3], ahead: f64, pairs: &mut Vec<Pair>) -> f64 {
+        let extents: Vec<_> = self.surfaces.iter().map(|surface| Extent::of(surface, at)).collect();
+        let bodies = &extents[..self.bodies];
+        let size = bodies.iter().map(|extent| extent.size().max_element()).sum::<f64>() / self.bodies as f64;
+        let margin = (0.1 * size).max(16.0 * ahead);
+        let reach = margin + self.widest_gap();
+        let mut order: Vec<usize> = (0..extents.len()).collect();
+        order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
+        let mut chosen = Vec::new();
+        for (at, &one) in order.iter().enumerate() {
+            if one < self.bodies {
+                chosen.push([one, one]);
+            }
+            let end = extents[one].ends() + reach;
+            let beside = order[at + 1..].iter().take_while(|&&other| extents[other].begins() <= end);
+            let near = beside.filter(|&&other| extents[one].distance(&extents[other]) <= reach);
+            chosen.extend(near.map(|&other| [one.min(other), one.max(other)]));
+        }
+        chosen.sort_unstable();
+        let mut old = std::mem::take(pairs).into_iter().peekable();
+        for of in chosen {
+            while old.next_if(|pair| pair.of < of).is_some() {}
+            match old.next_if(|pair| pair.of == of) {
+                Some(pair) => pairs.push(pair),
+                None => pairs.extend(self.law(of[0], of[1]).map(|law| Pair::new(of, law))),
+            }
+        }
+        margin
+    }
+
+    /// How many steps of ΔT (s), at most `most`, bodies can take alone, and the speed (m/s) up to which they can: above it they might
+    /// meet. `None` if they may meet in the next step.
+    pub(crate) fn alone(&self, at: Nodes<'_>, interval: Interval, most: u64) -> Option<(u64, f64)> {
+        /// A node moves at most so many times as far as its speed says: it may be thrown back by an obstacle.
+        const THROWN: f64 = 3.0;
+        if self.contacts.bodies.iter().any(|body| body.itself) {
+            return None;
+        }
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let Known { now: places, extents, order, .. } = &mut *known;
+        places.clear();
+        places.extend_from_slice(at.position);
+        self.add_obstacles(interval.begin, places);
+        extents.clear();
+        extents.extend(self.surfaces.iter().map(|surface| Extent::of(surface, places)));
+        let speeds = at.velocity.iter().map(|velocity| velocity.length_squared());
+        let fastest = speeds.fold(0.0, f64::max).sqrt();
+        let quickest = self.obstacles.iter().map(|solid| solid.greatest_speed).fold(0.0, f64::max);
+        let widest = self.widest_gap();
+        let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN);
+        order.clear();
+        order.extend(0..extents.len());
+        order.sort_unstable_by(|&one, &other| {
+            extents[one].begins().total_cmp(&extents[other].begins()).then(one.cmp(&other))
+        });
+        let clear = self.grounds.lock().unwrap_or_else(PoisonError::into_inner).clear(&self.surfaces, places)?;
+        let mut speed = bearable(clear, 0.0);
+        for (at, &one) in order.iter().enumerate() {
+            for &other in &order[at + 1..] {
+                // No later one is nearer.
+                let least = extents[other].begins() - extents[one].ends() - widest;
+                if speed <= 1.1 * fastest || bearable(least, quickest) >= speed {
+                    break;
+                }
+                let Some(Law { gap, .. }) = self.law(one.min(other), one.max(other)) else { continue };
+                let own =
+                    one.max(other).checked_sub(self.bodies).map_or(0.0, |solid| self.obstacles[solid].greatest_speed);
+                speed = speed.min(bearable(extents[one].distance(&extents[other]) - gap, own));
+            }
+        }
+        (speed > 1.1 * fastest).then_some((most, speed))
+    }
+}
