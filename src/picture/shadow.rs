@@ -7,6 +7,7 @@
 
 use super::camera::Lens;
 use super::narrow::narrow;
+use crate::sim::geometry;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -23,6 +24,8 @@ const DIRECTIONS: [usize; 2] = [48, 96];
 const MANY_TRIANGLES: usize = 6000;
 /// Carried surfaces of more triangles cast the shadows of coarser ones: shadows have few cells, and are blurred.
 const OF_SHAPE: usize = 2000;
+/// Cells as large as this share of a surface's extent show nothing of its shape.
+const COARSEST: f64 = 0.25;
 /// The blur of the edges of both shadows (sides), and the largest reach of a blur (cells).
 const BLUR: [f64; 2] = [0.06, 0.14];
 const MOST_BLUR: usize = CELLS / 8;
@@ -165,7 +168,10 @@ impl SurfaceCaster {
         };
         let mut side = (area / OF_SHAPE as f64).sqrt();
         let mut found = (Vec::from_iter(0..rest.len() as u32), triangles.to_vec());
-        while found.1.len() > OF_SHAPE {
+        // The triangles of a surface full of holes stay many in any grid.
+        let (low, high) = geometry::bounds(rest);
+        let coarsest = COARSEST * (high - low).max_element();
+        while found.1.len() > OF_SHAPE && side <= coarsest {
             let key = |at: usize| {
                 let [x, y, z] = (rest[at] / side).floor().to_array().map(|cell| cell as i64);
                 ([x, y, z, way(normals[at])], at as u32)

@@ -146,3 +146,25 @@ fn a_coarse_shape_is_closed_and_casts_nearly_the_same_shadow() {
         assert!(darkest > Some(&100) && apart < Some(26), "{darkest:?} {apart:?}");
     }
 }
+
+/// However many triangles stay in the coarsest grid, the search for a coarser shape ends.
+#[test]
+fn a_thousand_boxes_in_each_other_cast_the_shadow_of_one() {
+    let (of_one, sides) = block();
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for (at, first) in (0..8 * 1000).step_by(8).enumerate() {
+        points.extend(of_one.iter().map(|point| *point * (1.0 - 1e-6 * at as f64)));
+        triangles.extend(sides.iter().map(|of| of.map(|point| first + point)));
+    }
+    let shape = SurfaceCaster::new(&points, &triangles);
+    let one = edges(&sides);
+    let one = Casters::new(of_one, &sides, &one);
+    let mut all = Casters::new(Vec::new(), &[], &[]);
+    all.add_shape(shape.points.iter().map(|&at| points[at as usize]), &shape);
+    let (plane, key) = (Plane::new(DVec3::Y, 0.0), DVec3::new(-1.0, 2.0, 0.5).normalize());
+    let [one, all] = [one, all].map(|casters| casters.shades(&plane, key, DVec2::ZERO, 4.0, 1.0));
+    for (one, all) in one.iter().zip(&all) {
+        let apart = one.cells.iter().zip(&all.cells).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(one.cells.iter().max() > Some(&100) && apart < Some(40), "{apart:?}");
+    }
+}
