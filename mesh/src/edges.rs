@@ -1,7 +1,5 @@
 //! The edges of triangles, and what hangs together.
 
-use rayon::prelude::*;
-
 /// A triangle's use of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct EdgeUse {
@@ -23,9 +21,20 @@ impl EdgeUse {
                 forward: from < to,
             })
         };
-        let mut uses: Vec<_> = (0..).zip(triangles).flat_map(of).collect();
-        uses.par_sort_unstable();
-        uses
+        let uses: Vec<_> = (0..).zip(triangles).flat_map(of).collect();
+        // Most points are the lower ends of few edges, so that little is left to sort.
+        let points = uses.iter().map(|one| one.low as usize + 1).max().unwrap_or(0);
+        let mut next = vec![0; points + 1];
+        uses.iter().for_each(|one| next[one.low as usize + 1] += 1);
+        (0..points).for_each(|point| next[point + 1] += next[point]);
+        let mut sorted = uses.clone();
+        for one in uses {
+            let place = &mut next[one.low as usize];
+            sorted[*place] = one;
+            *place += 1;
+        }
+        sorted.chunk_by_mut(|one, other| one.low == other.low).for_each(<[Self]>::sort_unstable);
+        sorted
     }
 
     pub(crate) fn same(&self, other: &Self) -> bool {
@@ -93,6 +102,16 @@ impl Sets {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn uses_are_in_the_order_of_edges_and_triangles() {
+        // Points beside all others, and triangles that have a point or all of them in common.
+        let triangle = |at: u32| [at * 7 % 31, at * 13 % 29, if at.is_multiple_of(3) { 0 } else { at * 5 % 23 }];
+        let uses = EdgeUse::all(&(0..2000).map(triangle).collect::<Vec<_>>());
+        assert_eq!(uses.len(), 6000);
+        assert!(uses.is_sorted(), "{uses:?}");
+        assert_eq!(EdgeUse::all(&[]), []);
+    }
 
     #[test]
     fn sets_are_united() {
