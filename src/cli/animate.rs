@@ -373,7 +373,10 @@ fn others(path: &Path, rate: Option<f64>) -> Result<(Numbered, f64), Failure> {
         .map_err(|(message, _)| Failure::usage(format!("{name} {message}; move the others to another folder")))?;
     let Some((first, file)) = found.first() else {
         let like = frame_file_name(0);
-        bail!("{name} has no frames, such as {like}; make some with `localshape render SCENE -o {name}`");
+        bail!(
+            "{name} has no frames, such as {like}, and no PNG files with a number at the end of their names; make some with \
+             `localshape render SCENE -o {name}`, or number those of another program"
+        );
     };
     let file = name_of(file);
     if *first < 0 {

@@ -47,7 +47,8 @@ pub(crate) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// The files in a folder whose names have a number between `before` and `after`, in the order of their numbers. `after` may be in
-/// capital letters or not. Other words may stand before the number, the same in all names. A minus there is the sign of the number if another of the files has the number 0 without it.
+/// capital letters or not. Other words may stand before the number, the same in all names, and a bracket may close behind it, as in
+/// `frame (7).png`. A minus before it is the sign of the number if another of the files has the number 0 without it.
 ///
 /// # Errors
 /// The folder cannot be read, or has several such sequences.
@@ -58,6 +59,7 @@ pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(
         if !end.eq_ignore_ascii_case(after) {
             return None;
         }
+        let inner = inner.strip_suffix(')').unwrap_or(inner);
         let stem = inner.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
         Some((stem.clone(), inner[stem.len()..].parse::<i64>().ok()?, path))
     };

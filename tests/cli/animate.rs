@@ -556,6 +556,12 @@ fn frames_of_other_programs_have_the_rate_that_is_given() {
     bad(&place, "other -o out.apng --fps 30", &["other/render.0003.png is damaged, or is not a PNG picture"]);
     place.write("other/left.0003.png", &file(3));
     bad(&place, "other -o out.apng --fps 30", &["other has several sequences, left.… and render.…"]);
+    // As file managers number them, and without numbers.
+    (1..=3).for_each(|number| place.write(&format!("copies/Frame ({number}).png"), &file(number)));
+    let ran = place.run("animate copies -o copies.apng --fps 30").good();
+    assert!(ran.out.contains("3 pictures in 0.10 s"), "{}", ran.out);
+    place.write("plain/left.png", &file(1));
+    bad(&place, "plain -o out.apng --fps 30", &["plain has no frames", "number at the end of their names"]);
 }
 
 fn bad(place: &Place, arguments: &str, words: &[&str]) -> Ran {
