@@ -325,6 +325,9 @@ fn a_summary_says_what_a_scene_holds() {
         model("1e4, passes = 1"),
         "1 cube, k = 10 kN/m, rotation arctangent with 1 pass, as a material E = 20 kPa, ν = 0"
     );
+    let short = cube.replace("duration = 1", "duration = 0.01\nframes_per_second = 100\nstep = 0.01");
+    let text = good(&short).summary().to_string();
+    assert!(text.contains(", 1 step, "), "{text}");
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
     assert_eq!(json["bodies"][0]["elements"], serde_json::json!(["6 triangles"]));
     assert_eq!(json["runs"][1]["name"], "Mass-spring");

@@ -272,19 +272,16 @@ impl fmt::Display for SceneSummary {
                 continue;
             }
             let (step, part) = (short(run.step), short(self.cycle / run.step));
-            let steps = count(run.steps.into());
+            let steps = several(run.steps, "step");
             let kernel = if run.kernel == Kernel::Reference { ", kernel reference" } else { "" };
             let stepping = match run.tolerance {
                 Some(tolerance) => format!("tolerance {tolerance:e}"),
-                None => format!("ΔT = {step} s = T/{part}, {steps} steps"),
+                None => format!("ΔT = {step} s = T/{part}, {steps}"),
             };
             line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
             if let Some(Rest { residual, evaluations }) = run.rest {
-                let evaluations = count(evaluations.into());
-                line(
-                    "",
-                    &format!("starts at rest: {residual:.0e} of the load is left after {evaluations} evaluations"),
-                )?;
+                let evaluations = several(evaluations, "evaluation");
+                line("", &format!("starts at rest: {residual:.0e} of the load is left after {evaluations}"))?;
             }
             if let Some(AtRest { frame, kinetic_energy, residual }) = run.comes_to_rest {
                 let time = short(frame as f64 / self.frames_per_second);
