@@ -12,7 +12,6 @@
 mod arrows;
 mod camera;
 mod caption;
-mod carried;
 mod chart;
 mod compose;
 mod cut;
@@ -27,18 +26,13 @@ mod legend;
 pub(crate) mod measures;
 mod narrow;
 mod number;
-mod obstacle;
 mod order;
 mod page;
 mod plane;
-mod pointer;
 mod shadow;
 mod shell;
-mod skin;
-mod surface;
 mod tally;
 mod text;
-mod wire;
 mod wrap;
 
 pub(crate) use crate::colour::Colour;

@@ -177,18 +177,7 @@ mod tests {
 
     fn series(run: usize, is_count: bool, points: &[[f64; 2]]) -> Series {
         let style = LineStyle { colour: [0; 3], dash: &[] };
-        Series {
-            is_part: false,
-            run,
-            name: String::new(),
-            style,
-            is_count,
-            points: points.to_vec(),
-            times: Vec::new(),
-            members: Vec::new(),
-            diverged: None,
-            is_end: false,
-        }
+        Series { is_count, ..Series::plain(run, style, points.to_vec()) }
     }
 
     fn words(diagnostic: Diagnostic, series: &[Series]) -> Vec<String> {

@@ -86,7 +86,7 @@ impl Series {
     }
 
     /// Points of a run.
-    fn plain(run: usize, style: LineStyle, points: Vec<[f64; 2]>) -> Self {
+    pub(super) fn plain(run: usize, style: LineStyle, points: Vec<[f64; 2]>) -> Self {
         let (name, times, members) = Default::default();
         Self {
             run,

@@ -2,12 +2,12 @@
 
 use super::overlay::bearers;
 use crate::look::BODIES;
+use crate::picture::compose::skin::Skin;
+use crate::picture::compose::wire::Edges;
 use crate::picture::ears::{Ears, bare_elements};
 use crate::picture::shadow;
 use crate::picture::shell::is_broken;
-use crate::picture::skin::Skin;
 use crate::picture::tally::Tally;
-use crate::picture::wire::Edges;
 use crate::scene::{Run, Scene, SceneBody};
 use crate::sim::{Assembly, Body, Dimension, Snapshot};
 use glam::DVec3;

@@ -3,11 +3,11 @@
 use super::Composer;
 use super::draft::Draft;
 use crate::look::ColourScale;
+use crate::picture::compose::surface::{Hatch, Lines, SurfaceLines, Surfaces};
+use crate::picture::compose::wire::Wire;
 use crate::picture::layout::Scale;
 use crate::picture::layout::steps::{CLOSE, RING, THIN};
 use crate::picture::shell::{Side, boundaries, is_broken};
-use crate::picture::surface::{Hatch, Lines, SurfaceContext, SurfaceLines};
-use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use crate::sim::Field;
 use glam::DVec3;
@@ -42,20 +42,8 @@ impl Draft<'_> {
             true => Hatch { period: RING * self.scale.line() / self.lens.focal, middle: Some(self.centre(nodes)) },
             false => Hatch { period: HATCH_PERIOD * (soft * self.side), middle: None },
         };
-        let surroundings = SurfaceContext {
-            bodies: self.bodies.assembly(),
-            ears: &self.bodies.ears,
-            position: &self.position,
-            lens: &self.lens,
-            origin: self.origin,
-            side: self.side,
-            hatches: self.bodies.soft_of.iter().zip(self.bodies.nodes()).map(hatch).collect(),
-            edges: self.scene.view.edges.are_drawn(),
-            element: self.element,
-            flat: &self.run.snapshot.flat,
-            shades: self.shades.as_ref(),
-            colours: if self.shades.is_none() { &self.bodies.colours } else { &[] },
-        };
+        let hatches = self.bodies.soft_of.iter().zip(self.bodies.nodes()).map(hatch).collect();
+        let surfaces = Surfaces { draft: self, position: &self.position, hatches };
         let (over, broken) = (&self.run.snapshot.turned_over, &self.run.snapshot.broken);
         let fine = &self.bodies.skin.fine;
         let mut sets = boundaries(self.body, over, broken);
@@ -73,10 +61,10 @@ impl Draft<'_> {
         }
         let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
-        surroundings.add(&sets[0], total, kinds, &mut sound, lines);
+        surfaces.add(&sets[0], total, kinds, &mut sound, lines);
         let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
         let of_sound = lines.borders.len();
-        surroundings.add(&sets[1], total, kinds, &mut turned_over, lines);
+        surfaces.add(&sets[1], total, kinds, &mut turned_over, lines);
         // A border of both sets counts once.
         let shared: HashSet<_> = lines.borders[of_sound..].iter().filter_map(|border| border.edge).collect();
         let mut at = 0;
@@ -91,12 +79,12 @@ impl Draft<'_> {
         let mut points = self.carried();
         for fine in fine {
             let (own, others) = points.split_at(fine.surface.rest.len());
-            surroundings.add_carried(fine, own, [over, broken], &of_nodes, [&mut sound, &mut turned_over], lines);
+            surfaces.add_carried(fine, own, [over, broken], &of_nodes, [&mut sound, &mut turned_over], lines);
             points = others;
         }
         if self.scene.view.visible.cage {
-            surroundings.add_cage(&cages[0], LineKind::Edge, lines);
-            surroundings.add_cage(&cages[1], LineKind::AlarmEdge, lines);
+            surfaces.add_cage(&cages[0], LineKind::Edge, lines);
+            surfaces.add_cage(&cages[1], LineKind::AlarmEdge, lines);
         }
         // Coloured strokes replace them.
         if self.of_nodes.is_empty() {
@@ -107,6 +95,11 @@ impl Draft<'_> {
             }));
         }
         [sound, turned_over]
+    }
+
+    /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
+    pub(super) fn edges(&self) -> [bool; 2] {
+        self.scene.view.edges.are_drawn()
     }
 
     /// Whether a carried surface is seen in place of a face. Faces that a broken element uncovers are seen themselves.
@@ -194,19 +187,7 @@ impl Draft<'_> {
 
     /// Draws lines and nodes.
     fn wire(&self) -> Wire<'_> {
-        Wire {
-            body: self.body,
-            position: &self.position,
-            origin: self.origin,
-            side: self.side,
-            eye: self.lens.eye,
-            forward: self.lens.forward,
-            palette: &self.palette,
-            line: self.scale.line(),
-            element: self.element,
-            surfaces: self.scene.view.visible.surfaces,
-            shades: (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..])),
-        }
+        Wire { draft: self, shades: (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..])) }
     }
 }
 

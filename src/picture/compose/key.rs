@@ -3,8 +3,8 @@
 use super::Composer;
 use super::overlay::{self, KeyPlace};
 use crate::look::{BODIES, ColourScale};
+use crate::picture::compose::wire::spring_strain;
 use crate::picture::legend::{Bar, Sample, SampleKind};
-use crate::picture::wire::spring_strain;
 use crate::runner::{Frame, RunFrame};
 
 impl Composer<'_> {

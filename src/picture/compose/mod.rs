@@ -3,16 +3,22 @@
 mod bodies;
 mod body;
 mod cameras;
+mod carried;
 mod cut;
 mod draft;
 mod figure;
 mod ground;
 mod key;
 mod numbers;
+mod obstacle;
 pub(super) mod overlay;
 mod panel;
 mod plane_marks;
+mod pointer;
 mod region;
+mod skin;
+mod surface;
+mod wire;
 mod words;
 
 use super::camera::Lens;

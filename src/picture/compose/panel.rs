@@ -2,16 +2,12 @@
 
 use super::draft::{Draft, PixelBox};
 use super::overlay;
+use crate::picture::compose::obstacle::Staging;
+use crate::picture::compose::surface::SurfaceLines;
 use crate::picture::flat::Flat;
-use crate::picture::layout::Rectangle;
-use crate::picture::layout::steps::{APART, CHART, STRONG};
+use crate::picture::layout::steps::{APART, CHART};
 use crate::picture::narrow::{narrow, narrow_point};
-use crate::picture::obstacle::{Site, Staging};
-use crate::picture::pointer::Pointers;
-use crate::picture::shell::{boundaries, triangles};
-use crate::picture::surface::SurfaceLines;
 use crate::picture::{Item, Panel, Sight, Solid};
-use crate::sim::geometry;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -25,7 +21,7 @@ impl Draft<'_> {
         let [sound, turned_over] = self.surfaces(&mut lines);
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
-        let staging = self.staging();
+        let staging = Staging::new(self);
         let (mut obstacles, staged) = staging.draw(&mut lines);
         let corners = |solid: &Solid| solid.mesh.vertices.iter().map(|vertex| self.place(vertex.position)).collect();
         obstacles.fade = self.fading(&obstacles.solids.iter().map(corners).collect::<Vec<_>>());
@@ -54,7 +50,7 @@ impl Draft<'_> {
             self.signs(above);
             above.extend(flat.nodes());
         }
-        staging.arrows(&self.pointers(self.viewport), above);
+        staging.arrows(above);
         panel
     }
 
@@ -96,42 +92,5 @@ impl Draft<'_> {
     /// The middle of some nodes (m).
     pub(super) fn centre(&self, nodes: Range<usize>) -> DVec3 {
         self.position[nodes.clone()].iter().sum::<DVec3>() / nodes.len().max(1) as f64
-    }
-
-    /// The obstacles at the moment of the panel.
-    fn site(&self) -> Site<'_> {
-        Site {
-            obstacles: &self.scene.obstacles,
-            time: self.run.snapshot.time,
-            frame: 1.0 / self.scene.frames_per_second,
-            lens: &self.lens,
-            origin: self.origin,
-            side: self.side,
-            extent: self.composer.extent,
-            palette: &self.composer.palette,
-        }
-    }
-
-    /// The data for drawing obstacles.
-    fn staging(&self) -> Staging<'_> {
-        let broken = &self.run.snapshot.broken;
-        let left = || triangles(self.body, &boundaries(self.body, &[], broken)[0]);
-        Staging {
-            site: self.site(),
-            cell: self.cell(),
-            ground: geometry::ground(&self.scene.obstacles, self.run.snapshot.time),
-            position: &self.position,
-            skin: (self.scene.view.visible.surfaces && !self.diverged).then(|| self.bodies.cage()),
-            left: broken.contains(&true).then(left),
-            rim: STRONG * self.scale.line() / self.lens.focal,
-            soft: self.bodies.soft * self.side,
-            start: self.composer.start_box,
-            reach: &self.composer.reach,
-        }
-    }
-
-    /// Draws the arrows of moving objects, in a room.
-    pub(super) fn pointers(&self, room: Rectangle) -> Pointers<'_> {
-        Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
     }
 }

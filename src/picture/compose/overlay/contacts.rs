@@ -4,8 +4,8 @@ use super::{KeyPlace, Overlay};
 use crate::look::View;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::layout::steps::{FREE, RING};
-use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::layout::steps::RING;
+use crate::picture::legend::Sample;
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::scene::Scene;
@@ -30,13 +30,10 @@ impl Overlay for Contacts {
 
     /// An arrow with its force in words.
     fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
-        let view = &composer.scene.view;
-        let pixels = composer.pixels_a_metre(place.viewport, place.framing, place.scale);
-        let length = pixels * metres_a_newton(composer.scene);
+        let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
         let force = number::round_below(place.legend.arrow_length() / length);
-        let size = arrows::size(pixels * view.side, place.scale.unit);
-        let names = vec![format!("force {}", number::value(Diagnostic::ContactForce, force, composer.extent)).into()];
-        Some(Sample { names, kind: SampleKind::Arrow([force * length, size]) })
+        let meaning = format!("force {}", number::value(Diagnostic::ContactForce, force, composer.extent));
+        Some(place.arrow(composer, meaning, force * length))
     }
 
     /// Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. Dots lie above all arrows.
@@ -45,7 +42,6 @@ impl Overlay for Contacts {
         if !draft.scene.view.visible.contacts || draft.diverged {
             return;
         }
-        let size = arrows::size(draft.element, draft.scale.unit);
         let metres = metres_a_newton(draft.scene);
         let arrows = snapshot.reactions.iter().filter_map(|&Reaction { from, on, force, .. }| {
             let own = snapshot.contact_points.iter().filter(|point| {
@@ -54,12 +50,10 @@ impl Overlay for Contacts {
             });
             let (count, sum) = own.fold((0, DVec3::ZERO), |(count, sum), point| (count + 1, sum + point.at));
             let start = (count > 0).then(|| sum / f64::from(count))?;
-            let end = start + force * metres;
-            let (to, depth) = draft.lens.project(end)?;
-            let (ends, part) = arrows::inside([draft.pixel(start)?, to.into()], draft.clear, (RING * size).max(FREE))?;
-            Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(part)?))
+            draft.arrow([start, start + force * metres], 0.0, 1.0)
         });
         marks.extend(farthest_first(arrows.collect()));
+        let size = arrows::size(draft.element, draft.scale.unit);
         let radius = (DOT[0] * RING * size).min(DOT[1] * draft.element).max(LEAST);
         let pixels = snapshot.contact_points.iter().filter_map(|point| draft.pixel(point.at));
         let dots = pixels.filter(|&pixel| draft.holds(pixel, radius));

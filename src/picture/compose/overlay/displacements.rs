@@ -5,10 +5,9 @@ use crate::look::View;
 use crate::picture::compose::Composer;
 use crate::picture::compose::body::node_radius;
 use crate::picture::compose::draft::Draft;
-use crate::picture::layout::steps::{FREE, RING};
-use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::compose::skin::Skin;
+use crate::picture::legend::Sample;
 use crate::picture::order::farthest_first;
-use crate::picture::skin::Skin;
 use crate::picture::{Item, arrows, number};
 use crate::sim::Body;
 
@@ -22,31 +21,25 @@ impl Overlay for Displacements {
 
     /// An arrow with its length in words.
     fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
-        let view = &composer.scene.view;
-        let pixels = composer.pixels_a_metre(place.viewport, place.framing, place.scale);
-        let metres = number::round_below(place.legend.arrow_length() / (pixels * view.arrow_scale));
-        let size = arrows::size(pixels * view.side, place.scale.unit);
-        let names = vec![format!("displacement {}", number::round_length(metres, composer.extent)).into()];
-        Some(Sample { names, kind: SampleKind::Arrow([metres * pixels * view.arrow_scale, size]) })
+        let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
+        let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
+        let meaning = format!("displacement {}", number::round_length(metres, composer.extent));
+        Some(place.arrow(composer, meaning, metres * pixels * scale))
     }
 
     /// The farthest first, in the colour of text as in the key: paths and fields have others. Arrows that would be specks on
     /// the nodes are left out.
     fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
-        let (view, palette) = (&draft.scene.view, &draft.composer.palette);
+        let view = &draft.scene.view;
         if !view.visible.displacements || draft.diverged || draft.position.is_empty() {
             return;
         }
-        let size = arrows::size(draft.element, draft.scale.unit);
         let node = if view.visible.nodes { node_radius(draft.scale, draft.element) } else { 0.0 };
-        let shortest = (RING * size).max(FREE).max(2.0 * node);
-        let arrows = draft.facing_bearers().into_iter().filter_map(|(node, opacity)| {
-            let placement = draft.run.snapshot.placements[draft.bodies.assembly().body_of_node(node as usize)];
-            let start = placement.place(draft.body.rest()[node as usize]);
-            let end = start + view.arrow_scale * (draft.position[node as usize] - start);
-            let (to, depth) = draft.lens.project(end)?;
-            let (ends, part) = arrows::inside([draft.pixel(start)?, to.into()], draft.clear, shortest)?;
-            Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(opacity * part)?))
+        let arrows = draft.facing_bearers().into_iter().filter_map(|(bearer, opacity)| {
+            let placement = draft.run.snapshot.placements[draft.bodies.assembly().body_of_node(bearer as usize)];
+            let start = placement.place(draft.body.rest()[bearer as usize]);
+            let end = start + view.arrow_scale * (draft.position[bearer as usize] - start);
+            draft.arrow([start, end], 2.0 * node, opacity)
         });
         marks.extend(farthest_first(arrows.collect()));
     }

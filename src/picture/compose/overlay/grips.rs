@@ -2,10 +2,10 @@
 
 use super::Overlay;
 use crate::picture::compose::draft::Draft;
+use crate::picture::compose::pointer::Going;
 use crate::picture::layout::steps::{CLOSE, FREE, RING, THIN};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{self, Path};
-use crate::picture::pointer::Going;
 use crate::picture::{Colour, Item};
 use crate::sim::{Grip, Motion};
 use glam::{DVec3, Vec2};
@@ -40,7 +40,7 @@ impl Overlay for Grips {
             if grip.motion != Motion::Still {
                 let middle = nodes.iter().map(|&node| draft.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
                 let gap = PIN[usize::from(draft.flat)] + FREE;
-                draft.pointers(draft.between_words()).draw(middle, draft.going(grip), false, gap, marks);
+                draft.pointer((middle, draft.going(grip)), false, gap, draft.between_words(), marks);
             }
         }
     }

@@ -4,8 +4,8 @@ use super::{KeyPlace, Overlay, contacts};
 use crate::look::View;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::layout::steps::{FREE, RING, STRONG};
-use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::layout::steps::STRONG;
+use crate::picture::legend::Sample;
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::reading::captions::quantity;
@@ -32,25 +32,23 @@ impl Overlay for Loads {
 
     /// An arrow with its force or its pressure in words.
     fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
-        let (scene, view) = (composer.scene, &composer.scene.view);
-        let pixels = composer.pixels_a_metre(place.viewport, place.framing, place.scale);
+        let pixels = place.pixels_a_metre(composer);
         let room = place.legend.arrow_length() / pixels;
-        let scales = Scales::new(scene);
+        let scales = Scales::new(composer.scene);
         let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
-        let size = arrows::size(pixels * view.side, place.scale.unit);
         let (value, metres, unit) = match (force, pressure) {
             (Some(force), _) => (number::round_below(force), scales.newton, "N"),
             (None, Some(pressure)) => (number::round_below(pressure), scales.pascal, scales.unit),
             (None, None) if scales.torque == 0.0 => return None,
             (None, None) => {
-                let names = vec![format!("torque {}", quantity(scales.torque, "N m")).into()];
-                return Some(Sample { names, kind: SampleKind::Arrow([place.legend.arrow_length(), size]) });
+                let meaning = format!("torque {}", quantity(scales.torque, "N m"));
+                return Some(place.arrow(composer, meaning, place.legend.arrow_length()));
             }
         };
         let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
         let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
-        let names = vec![format!("load {}{also}", quantity(value, unit)).into()];
-        Some(Sample { names, kind: SampleKind::Arrow([value * metres * pixels, size]) })
+        let meaning = format!("load {}{also}", quantity(value, unit));
+        Some(place.arrow(composer, meaning, value * metres * pixels))
     }
 
     /// A force that pushes its body ends at the middle of its nodes, and one that pulls it begins there.
@@ -70,7 +68,7 @@ impl Overlay for Loads {
                     let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
                     let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
                     let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
-                    found.extend(draft.arrow_of_load(start, way));
+                    found.extend(draft.arrow([start, start + way], 0.0, 1.0));
                 }
                 Pull::Pressure(pressure, faces) => {
                     let length = scales.pascal * pressure * share;
@@ -144,15 +142,6 @@ impl Draft<'_> {
         bodies.nodes(bodies.body_of_node(first))
     }
 
-    /// An arrow along a way (m), with its depth.
-    fn arrow_of_load(&self, start: DVec3, way: DVec3) -> Option<(f64, Item)> {
-        let size = arrows::size(self.element, self.scale.unit);
-        let (to, depth) = self.lens.project(start + way)?;
-        let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, (RING * size).max(FREE))?;
-        let palette = &self.composer.palette;
-        Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(part)?))
-    }
-
     /// An arrow of a length (m) on the outside of a face that faces the viewer: towards the face, or away from it if the length is negative.
     fn pressed(&self, face: &[u32], length: f64) -> Option<(f64, Item)> {
         let (mut area, count) = (DVec3::ZERO, face.len() as f64);
@@ -160,8 +149,9 @@ impl Draft<'_> {
         let at = face.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / count;
         let out = area.normalize_or_zero() * length.abs();
         let faces_viewer = self.flat || self.lens.facing(at, area) > 0.0;
-        let [start, way] = if length > 0.0 { [at + out, -out] } else { [at, out] };
-        faces_viewer.then(|| self.arrow_of_load(start, way))?
+        let start = if length > 0.0 { at + out } else { at };
+        let end = if length > 0.0 { start - out } else { start + out };
+        faces_viewer.then(|| self.arrow([start, end], 0.0, 1.0))?
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.

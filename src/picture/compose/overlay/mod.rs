@@ -13,9 +13,11 @@ pub(super) use displacements::bearers;
 use super::Composer;
 use super::draft::Draft;
 use crate::look::View;
+use crate::picture::layout::steps::{FREE, RING};
 use crate::picture::layout::{Rectangle, Scale};
-use crate::picture::legend::{Legend, Sample};
-use crate::picture::{Framing, Item};
+use crate::picture::legend::{Legend, Sample, SampleKind};
+use crate::picture::{Framing, Item, arrows};
+use glam::DVec3;
 
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
 pub(super) const MARKS: [&dyn Overlay; 4] =
@@ -50,6 +52,31 @@ pub(in crate::picture) struct KeyPlace<'a> {
     pub(super) viewport: Rectangle,
     pub(super) framing: &'a Framing,
     pub(super) scale: Scale,
+}
+
+impl KeyPlace<'_> {
+    /// Pixels per metre at the target of its panel.
+    fn pixels_a_metre(&self, composer: &Composer<'_>) -> f64 {
+        composer.pixels_a_metre(self.viewport, self.framing, self.scale)
+    }
+
+    /// The sample of an arrow of a length (px).
+    fn arrow<'c>(&self, composer: &Composer<'_>, meaning: String, length: f64) -> Sample<'c> {
+        let size = arrows::size(self.pixels_a_metre(composer) * composer.scene.view.side, self.scale.unit);
+        Sample { names: vec![meaning.into()], kind: SampleKind::Arrow([length, size]) }
+    }
+}
+
+impl Draft<'_> {
+    /// An arrow between two points (m), with its depth; `None` if it would be a speck, or is not longer than `shortest` (px).
+    fn arrow(&self, [start, end]: [DVec3; 2], shortest: f64, opacity: f64) -> Option<(f64, Item)> {
+        let size = arrows::size(self.element, self.scale.unit);
+        let (to, depth) = self.lens.project(end)?;
+        let shortest = (RING * size).max(FREE).max(shortest);
+        let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;
+        let palette = &self.composer.palette;
+        Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(opacity * part)?))
+    }
 }
 
 /// All overlays, in the order of their samples.

@@ -31,20 +31,20 @@ impl Staging<'_> {
         lines: &mut Vec<Line>,
         staged: &mut Staged,
     ) {
-        let distance = (middle - self.site.lens.eye).dot(self.site.lens.forward) - radius;
-        let pixels = self.site.lens.focal * radius / distance.max(self.site.lens.near);
+        let distance = (middle - self.draft.lens.eye).dot(self.draft.lens.forward) - radius;
+        let pixels = self.draft.lens.focal * radius / distance.max(self.draft.lens.near);
         let needed = (PI / (2.0 * FLATNESS / pixels.max(1e-3)).sqrt()).ceil();
         let segments = needed.clamp(SEGMENTS[0] as f64, SEGMENTS[1] as f64) as usize;
         let lathe = shape(segments.next_multiple_of(4));
         let near = self.near(lathe.points().into_iter());
         // Finer where the body occludes its light.
         let mesh = match near {
-            Some(near) => self.turned(&lathe.refined(CELL * self.soft), |at, out| near.to(at, out)),
+            Some(near) => self.turned(&lathe.refined(CELL * self.soft()), |at, out| near.to(at, out)),
             None => self.turned(&lathe, |_, _| 0.0),
         };
         self.outline(&lathe, lines);
         staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
+        solids.push(Solid { mesh, colour: self.palette().obstacle });
         let coarse = shape(SHADOW_SEGMENTS);
         staged.add(&coarse.points(), &coarse.triangles());
     }
@@ -52,13 +52,13 @@ impl Staging<'_> {
     /// The surface of a ball.
     pub(super) fn ball(&self, centre: DVec3, radius: f64, segments: usize) -> Lathe {
         let rings = segments / 2;
-        if radius <= LARGE_BALL * self.site.extent {
+        if radius <= LARGE_BALL * self.extent() {
             let profile = (0..=rings).map(|ring| (PI * ring as f64 / rings as f64 - FRAC_PI_2, 0.0));
             return lathe(centre, DVec3::Y, radius, profile, segments);
         }
         // The rings become closer towards the body.
-        let axis = (self.site.origin - centre).try_normalize().unwrap_or(DVec3::Y);
-        let growth = 1.2 * libm::log(1.0 + radius / self.site.extent);
+        let axis = (self.draft.origin - centre).try_normalize().unwrap_or(DVec3::Y);
+        let growth = 1.2 * libm::log(1.0 + radius / self.extent());
         let profile = (0..=rings).rev().map(|ring| {
             let share = libm::expm1(growth * ring as f64 / rings as f64) / libm::expm1(growth);
             (FRAC_PI_2 - PI * share, 0.0)
@@ -84,7 +84,7 @@ impl Staging<'_> {
             let polygon = nodes.map(|node| corners[node]);
             // Faces are cut into cells where the body occludes their light.
             let cells = |one: usize, other: usize| match near {
-                Some(_) => (polygon[one].distance(polygon[other]) / (CELL * self.soft)).ceil().clamp(1.0, MOST_CELLS),
+                Some(_) => (polygon[one].distance(polygon[other]) / (CELL * self.soft())).ceil().clamp(1.0, MOST_CELLS),
                 None => 1.0,
             };
             let counts = [cells(0, 1), cells(0, 3)];
@@ -100,7 +100,7 @@ impl Staging<'_> {
                 let above = at + across + 1;
                 mesh.triangles.extend([[at, at + 1, above + 1], [at, above + 1, above]]);
             }
-            seen[face] = self.site.lens.sees(polygon[0], normal);
+            seen[face] = self.draft.lens.sees(polygon[0], normal);
             if seen[face] {
                 self.ground_line(&polygon, lines);
             }
@@ -120,7 +120,7 @@ impl Staging<'_> {
             .map(|three| three.map(|at| at as u32))
             .collect();
         staged.add(corners, &triangles);
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
+        solids.push(Solid { mesh, colour: self.palette().obstacle });
     }
 
     /// The mesh of a round obstacle with the ambient light that the body takes at points with normals.
@@ -130,7 +130,7 @@ impl Staging<'_> {
     }
 
     fn corner(&self, at: DVec3, normal: DVec3, near: f64) -> Vertex {
-        let position = self.site.relative(at);
+        let position = self.draft.relative(at);
         Vertex { position, normal: narrow_point(normal).to_array(), hatch: narrow(near) }
     }
 
@@ -143,7 +143,7 @@ impl Staging<'_> {
                 let quad = |segment| {
                     let [a, b] = [at(ring - 1, segment), at(ring - 1, segment + 1)];
                     let [c, d] = [at(ring, segment + 1), at(ring, segment)];
-                    self.site.lens.sees(a.midpoint(c), (c - a).cross(d - b))
+                    self.draft.lens.sees(a.midpoint(c), (c - a).cross(d - b))
                 };
                 (0..count).map(quad).collect()
             })
@@ -172,7 +172,7 @@ impl Staging<'_> {
     pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, lines: &mut Vec<Line>) {
         let ground = self.ground.as_slice();
         if let Some([from, to]) = clipped_line([from, to], ground) {
-            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind, strength: 1.0 });
+            lines.push(Line { from: self.draft.relative(from), to: self.draft.relative(to), kind, strength: 1.0 });
         }
     }
 
@@ -191,7 +191,7 @@ impl Staging<'_> {
             .collect();
         if let [from, to] = through[..] {
             let kind = LineKind::ObstacleContour;
-            lines.push(Line { from: self.site.relative(from), to: self.site.relative(to), kind, strength: 1.0 });
+            lines.push(Line { from: self.draft.relative(from), to: self.draft.relative(to), kind, strength: 1.0 });
         }
     }
 }

@@ -1,18 +1,18 @@
 //! Fine surfaces that coarse bodies carry. Data that do not depend on the frame, such as creases and the triangles around each
 //! point, is found once.
 
-use super::chart::needed;
-use super::field::NOWHERE;
-use super::narrow::{narrow, narrow_count, narrow_point};
-use super::page::{self, joined};
-use super::shadow::{SurfaceCaster, edges};
-use super::shell::Side;
-use super::surface::{Border, SurfaceContext, SurfaceLines, newell};
-use super::{LineKind, Mesh, Vertex};
 use crate::bins::Bins;
 use crate::carried::append_positions;
 use crate::look::BODIES;
 use crate::mesh::Sets;
+use crate::picture::chart::needed;
+use crate::picture::compose::surface::{Border, SurfaceLines, Surfaces, newell};
+use crate::picture::field::NOWHERE;
+use crate::picture::narrow::{narrow, narrow_count, narrow_point};
+use crate::picture::page::{self, joined};
+use crate::picture::shadow::{SurfaceCaster, edges};
+use crate::picture::shell::Side;
+use crate::picture::{LineKind, Mesh, Vertex};
 use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Body, Carried};
 use glam::{DVec3, Vec3};
@@ -244,7 +244,7 @@ fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
     surface.triangles.par_iter().with_min_len(OF_THREAD).map(of_triangle).collect()
 }
 
-impl SurfaceContext<'_> {
+impl Surfaces<'_> {
     /// Adds a carried surface with its points at positions (m) to the meshes of sound and of turned-over elements, and its
     /// lines to the lines. `of_nodes` has the places of nodes on the scale of a field, if there is one.
     pub(super) fn add_carried(
@@ -256,11 +256,11 @@ impl SurfaceContext<'_> {
         [sound, turned_over]: [&mut Mesh; 2],
         lines: &mut SurfaceLines,
     ) {
-        let per_side = 1.0 / self.side;
-        let place = |at: &DVec3| narrow_point((at - self.origin) * per_side);
-        let (eye, mut places) = (place(&self.lens.eye), Vec::new());
+        let (origin, per_side) = (self.draft.origin, 1.0 / self.draft.side);
+        let place = |at: &DVec3| narrow_point((at - origin) * per_side);
+        let (eye, mut places) = (place(&self.draft.lens.eye), Vec::new());
         points.par_iter().with_min_len(OF_THREAD).map(place).collect_into_vec(&mut places);
-        let gone = fine.gone(self.bodies, broken);
+        let gone = fine.gone(self.draft.bodies.assembly(), broken);
         let faces = fine.seen(&places, &gone, eye);
         let vertex = |corner: usize| {
             let at = places[fine.points[corner] as usize];
@@ -268,9 +268,9 @@ impl SurfaceContext<'_> {
         };
         let base = sound.vertices.len();
         sound.vertices.par_extend((0..fine.points.len()).into_par_iter().with_min_len(OF_THREAD).map(vertex));
-        if !self.colours.is_empty() {
+        if !self.colours().is_empty() {
             sound.shades.resize(sound.vertices.len(), -1.0 - narrow_count(fine.body % BODIES));
-        } else if self.shades.is_some() {
+        } else if self.draft.shades.is_some() {
             let shades = fine.shades(of_nodes);
             sound.shades.extend(fine.points.iter().map(|&point| shades[point as usize]));
         }
@@ -362,7 +362,7 @@ impl SurfaceContext<'_> {
     /// The ends (m) of lines between pairs of points, joined, and without points that could not be told from straight lines.
     fn long(&self, pairs: &[[u32; 2]], points: &[DVec3]) -> Vec<[DVec3; 2]> {
         let place = |point: u32| points[point as usize];
-        let pixel = |point: u32| self.lens.project(place(point)).map_or([f64::NAN; 2], |(pixel, _)| pixel);
+        let pixel = |point: u32| self.draft.lens.project(place(point)).map_or([f64::NAN; 2], |(pixel, _)| pixel);
         let mut all = Vec::with_capacity(pairs.len());
         for line in joined(pairs, |point| page::point(pixel(point).into())) {
             let needed = needed(&line.iter().map(|&point| pixel(point)).collect::<Vec<_>>(), STRAIGHT);

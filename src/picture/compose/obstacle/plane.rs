@@ -3,6 +3,7 @@
 use super::Staged;
 use super::half_space::{clipped_polygon, half_space};
 use super::space::Staging;
+use crate::picture::layout::steps::STRONG;
 use crate::picture::{Mesh, Obstacles, Solid, Vertex};
 use crate::sim::{Obstacle, Shape};
 use glam::DVec3;
@@ -16,16 +17,17 @@ const SEGMENTS: [f64; 2] = [24.0, 360.0];
 impl Staging<'_> {
     /// All obstacles but half-spaces, in front of half-spaces. Each is one polygon in the colour of its rim and another inside.
     pub(super) fn flat(&self) -> (Obstacles, Staged) {
-        let half_spaces = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
+        let half_spaces = self.draft.scene.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.time()));
         let half_spaces: Vec<_> = half_spaces.collect();
-        let [colour, rim_colour] = self.site.palette.obstacle_flat;
+        let [colour, rim_colour] = self.palette().obstacle_flat;
         let (mut obstacles, mut staged) = (Obstacles::default(), Staged::default());
+        let rim = STRONG * self.draft.scale.line() / self.draft.lens.focal;
         // The first obstacle lies in front.
-        for obstacle in self.site.obstacles.iter().rev() {
-            for (inwards, colour) in [(0.0, rim_colour), (self.rim, colour)] {
+        for obstacle in self.draft.scene.obstacles.iter().rev() {
+            for (inwards, colour) in [(0.0, rim_colour), (rim, colour)] {
                 let corners = self.around(obstacle, inwards).unwrap_or_default();
                 let corners = clipped_polygon(&corners, &half_spaces);
-                let vertex = |&at: &DVec3| Vertex { position: self.site.relative(at), ..Vertex::default() };
+                let vertex = |&at: &DVec3| Vertex { position: self.draft.relative(at), ..Vertex::default() };
                 let mesh = Mesh { vertices: corners.iter().map(vertex).collect(), ..Mesh::default() };
                 obstacles.solids.extend((!corners.is_empty()).then_some(Solid { mesh, colour }));
                 staged.outermost.extend(corners);
@@ -37,7 +39,7 @@ impl Staging<'_> {
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and if
     /// nothing is left.
     fn around(&self, obstacle: &Obstacle, inwards: f64) -> Option<Vec<DVec3>> {
-        let (pose, pivot) = (obstacle.pose(self.site.time), obstacle.pivot);
+        let (pose, pivot) = (obstacle.pose(self.time()), obstacle.pivot);
         let place = |point: DVec3| pose.apply(pivot, point);
         let (ends, radius) = match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => return None,
@@ -55,7 +57,7 @@ impl Staging<'_> {
 
     /// The outline of all points near a line, moved inwards by a length (m).
     fn stadium(&self, [from, to]: [DVec3; 2], radius: f64, inwards: f64) -> Vec<DVec3> {
-        let needed = PI / (2.0 * FLATNESS / (radius * self.site.lens.focal).max(1e-3)).sqrt();
+        let needed = PI / (2.0 * FLATNESS / (radius * self.draft.lens.focal).max(1e-3)).sqrt();
         let segments = (needed.clamp(SEGMENTS[0], SEGMENTS[1]) as usize).next_multiple_of(2);
         let along = (to - from).try_normalize().unwrap_or(DVec3::X);
         let across = DVec3::new(-along.y, along.x, 0.0);

@@ -1,18 +1,17 @@
 //! Closed surfaces of sets of elements: triangles, edges and contours. All of them come from the pieces of a cut face,
 //! so they are in one long file.
 
-use super::camera::Lens;
-use super::cut::{CutPatch, CutPatches, Cuts};
-use super::ears::{self, Ears};
-use super::field::Shades;
-use super::measures::SMALLEST_ELEMENT;
-use super::narrow::{narrow, narrow_count, narrow_point};
-use super::shell::Side;
-use super::{Line, LineKind, Mesh, Vertex};
+use super::draft::Draft;
 use crate::bins::Bins;
 use crate::look::BODIES;
+use crate::picture::cut::{CutPatch, CutPatches, Cuts};
+use crate::picture::ears;
+use crate::picture::field::Shades;
+use crate::picture::measures::SMALLEST_ELEMENT;
+use crate::picture::narrow::{narrow, narrow_count, narrow_point};
+use crate::picture::shell::Side;
+use crate::picture::{Line, LineKind, Mesh, Vertex};
 use crate::sim::geometry::{around, ordered};
-use crate::sim::{Assembly, Body};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -40,28 +39,12 @@ const FINE: f64 = 40.0;
 /// Faces of elements larger than this (px) have edges dark enough to need no smooth borders below them.
 const DARK: f64 = 13.0;
 
-/// The data for turning faces into the parts of a panel.
-pub(super) struct SurfaceContext<'a> {
-    pub(super) bodies: &'a Assembly,
-    pub(super) ears: &'a Ears,
+/// Turns faces into the parts of a panel.
+pub(super) struct Surfaces<'a> {
+    pub(super) draft: &'a Draft<'a>,
     pub(super) position: &'a [DVec3],
-    pub(super) lens: &'a Lens,
-    /// The panel's origin (m).
-    pub(super) origin: DVec3,
-    /// The panel's unit of length (m).
-    pub(super) side: f64,
     /// The hatch of each body.
     pub(super) hatches: Vec<Hatch>,
-    /// Length of an element's edge (px).
-    pub(super) element: f64,
-    /// Whether each element is flat.
-    pub(super) flat: &'a [bool],
-    /// The field that colours the surfaces.
-    pub(super) shades: Option<&'a Shades>,
-    /// The place of each element among the colours of bodies and regions; empty if there is one.
-    pub(super) colours: &'a [u8],
-    /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
-    pub(super) edges: [bool; 2],
 }
 
 /// The hatch of a body. Stripes have a period (m) along `X + Y + Z` of the body at rest or, around a middle (m), at right angles
@@ -201,10 +184,10 @@ impl FaceSides {
     }
 }
 
-impl SurfaceContext<'_> {
-    /// All bodies as one.
-    fn body(&self) -> &Body {
-        self.bodies.whole()
+impl Surfaces<'_> {
+    /// The place of each element among the colours of bodies and regions; empty if there is one, or a field colours surfaces.
+    pub(super) fn colours(&self) -> &[u8] {
+        if self.draft.shades.is_none() { &self.draft.bodies.colours } else { &[] }
     }
 
     pub(super) fn at(&self, node: u32) -> DVec3 {
@@ -214,7 +197,7 @@ impl SurfaceContext<'_> {
     /// The corners of a face as seen from outside of the set that it bounds.
     pub(super) fn corners(&self, side: &Side, nodes: &mut Vec<u32>) {
         nodes.clear();
-        nodes.extend_from_slice(&self.body().faces().nodes[side.face as usize]);
+        nodes.extend_from_slice(&self.draft.body.faces().nodes[side.face as usize]);
         if side.reversed {
             nodes.reverse();
         }
@@ -231,9 +214,13 @@ impl SurfaceContext<'_> {
         // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
-        mesh.shades.reserve(if self.shades.is_some() || !self.colours.is_empty() { 4 * faces.len() } else { 0 });
+        mesh.shades.reserve(if self.draft.shades.is_some() || !self.colours().is_empty() {
+            4 * faces.len()
+        } else {
+            0
+        });
         // Edges of turned-over elements are always drawn.
-        let is_edged = self.is_fine() && (self.edges[0] || kinds.edge != LineKind::Edge);
+        let is_edged = self.is_fine() && (self.draft.edges()[0] || kinds.edge != LineKind::Edge);
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
         let mut last = Vec::new();
         let is_inside_out = kinds.edge != LineKind::Edge;
@@ -259,7 +246,7 @@ impl SurfaceContext<'_> {
             note_borders(&patch, ears, grid, &cuts, &mut borders);
         }
         mesh.triangles.append(&mut last);
-        let sides = borders.sorted(self.body().len());
+        let sides = borders.sorted(self.draft.body.len());
         for edge in sides.chunk_by(|one, other| ordered(one.ends) == ordered(other.ends)) {
             self.edge(edge, &mut borders, kinds, lines);
         }
@@ -273,11 +260,11 @@ impl SurfaceContext<'_> {
         let is_hidden = kinds.edge == LineKind::Edge && sides.iter().all(faces_away);
         // Edges of turned-over elements are always drawn.
         let [in_front, behind] = match kinds.edge {
-            LineKind::Edge => self.edges,
+            LineKind::Edge => self.draft.edges(),
             _ => [true; 2],
         };
         // Smaller ones would be invisible.
-        let is_large = self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
+        let is_large = self.draft.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
         if is_large && !self.is_fine() && if is_hidden { behind } else { in_front } {
             lines.drawn.push(self.line([start, end], kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
@@ -286,8 +273,12 @@ impl SurfaceContext<'_> {
             self.contour(part.map(|at| start.lerp(end, at)), Some([a, b]), kinds, lines);
             is_contour = true;
         });
-        let is_dark = self.is_fine() && in_front && self.element > DARK;
-        if !is_hidden && !is_contour && !is_dark && (borders.are_bent(sides) || self.shades.is_some_and(Shades::jump)) {
+        let is_dark = self.is_fine() && in_front && self.draft.element > DARK;
+        if !is_hidden
+            && !is_contour
+            && !is_dark
+            && (borders.are_bent(sides) || self.draft.shades.as_ref().is_some_and(Shades::jump))
+        {
             lines.borders.push(Border { line: self.line([start, end], kinds.edge, 1.0), edge: Some([a, b]) });
         }
     }
@@ -301,22 +292,22 @@ impl SurfaceContext<'_> {
 
     /// Whether faces draw the edges of their elements.
     fn is_fine(&self) -> bool {
-        !self.lens.orthographic
-            && self.ears.is_empty()
-            && self.element < FINE
-            && self.body().elements().len() >= MANY_ELEMENTS
+        !self.draft.lens.orthographic
+            && self.draft.bodies.ears.is_empty()
+            && self.draft.element < FINE
+            && self.draft.body.elements().len() >= MANY_ELEMENTS
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
     /// In the plane all are visible.
     pub(super) fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
-        if self.lens.orthographic { 1.0 } else { -normal.dot(point - self.lens.eye) }
+        if self.draft.lens.orthographic { 1.0 } else { -normal.dot(point - self.draft.lens.eye) }
     }
 
     /// The triangles of a face that is not convex: in space as at rest, in the plane as now, on a page whose y-axis points down.
     fn ears(&self, nodes: &[u32]) -> Option<Cow<'_, [[u32; 3]]>> {
-        if !self.lens.orthographic {
-            return self.ears.of(nodes).map(Cow::Borrowed);
+        if !self.draft.lens.orthographic {
+            return self.draft.bodies.ears.of(nodes).map(Cow::Borrowed);
         }
         let mut corners: Vec<_> = nodes.iter().map(|&node| DVec2::new(self.at(node).x, -self.at(node).y)).collect();
         let is_reversed = newell(&corners.iter().map(|at| at.extend(0.0)).collect::<Vec<_>>()).z < 0.0;
@@ -330,31 +321,26 @@ impl SurfaceContext<'_> {
 
     /// The corners of a face in space that is a bilinear patch.
     fn bilinear(&self, nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
-        nodes.try_into().ok().filter(|_| ears.is_none() && !self.lens.orthographic)
+        nodes.try_into().ok().filter(|_| ears.is_none() && !self.draft.lens.orthographic)
     }
 
     /// A line between two points (m).
     pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, strength: f64) -> Line {
-        Line { from: self.relative(from), to: self.relative(to), kind, strength: narrow(strength) }
-    }
-
-    /// A point (m) in the panel's coordinates.
-    pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
-        narrow_point((point - self.origin) / self.side).to_array()
+        Line { from: self.draft.relative(from), to: self.draft.relative(to), kind, strength: narrow(strength) }
     }
 
     /// The number of pieces of each face, among a total number of faces.
     fn cuts(&self, faces: &[Side], total: usize) -> Cuts {
-        if self.lens.orthographic || total > VERY_MANY_FACES {
+        if self.draft.lens.orthographic || total > VERY_MANY_FACES {
             return Cuts::none();
         }
         let of_few = (CELLS_OF_FEW / total.max(1)).isqrt().clamp(FINEST_CUT, FINEST_OF_FEW);
         let affordable = if total > MANY_FACES { 2 } else { of_few };
-        let mut cuts = Cuts::new(self.body().len());
+        let mut cuts = Cuts::new(self.draft.body.len());
         let mut nodes = Vec::new();
         for side in faces {
             self.corners(side, &mut nodes);
-            let corners = self.bilinear(&nodes, self.ears.of(&nodes));
+            let corners = self.bilinear(&nodes, self.draft.bodies.ears.of(&nodes));
             cuts.add(&nodes, corners.map_or(1, |corners| self.cells(corners).min(affordable as f64) as u8));
         }
         cuts
@@ -363,17 +349,17 @@ impl SurfaceContext<'_> {
     /// The number of cells in each direction that a bilinear patch needs.
     fn cells(&self, corners: [u32; 4]) -> f64 {
         let [a, b, c, d] = corners.map(|node| self.at(node));
-        let distances = [a, b, c, d].into_iter().filter_map(|corner| Some(self.lens.project(corner)?.1));
+        let distances = [a, b, c, d].into_iter().filter_map(|corner| Some(self.draft.lens.project(corner)?.1));
         let Some(distance) = distances.reduce(f64::min) else { return 1.0 };
         // In the middle of a patch the distance of its diagonals is half of this, and each is a quarter away from the
         // patch.
-        let off = (a - b + c - d).length() / 4.0 * self.lens.focal / distance;
+        let off = (a - b + c - d).length() / 4.0 * self.draft.lens.focal / distance;
         (off / FLATNESS).sqrt().ceil().max(1.0)
     }
 
     /// Whether a face belongs to a flat element.
     fn is_flat(&self, side: &Side) -> bool {
-        side.element.and_then(|element| self.flat.get(element as usize)).copied().unwrap_or(false)
+        side.element.and_then(|element| self.draft.run.snapshot.flat.get(element as usize)).copied().unwrap_or(false)
     }
 
     /// Cuts a face into triangles and adds them to a mesh, with dots or, without a value, with the hatch.
@@ -391,22 +377,22 @@ impl SurfaceContext<'_> {
         corners.clear();
         corners.extend(nodes.iter().map(|&node| self.at(node)));
         phases.clear();
-        let body = self.bodies.body_of_node(nodes[0] as usize);
+        let body = self.draft.bodies.assembly().body_of_node(nodes[0] as usize);
         let Hatch { period, middle } = self.hatches[body];
         let phase = |node: u32| match middle {
             Some(middle) => (self.at(node) - middle).dot(DVec3::X - DVec3::Y) * FRAC_1_SQRT_2 / period,
-            None => self.body().rest()[node as usize].dot(DVec3::ONE) / period,
+            None => self.draft.body.rest()[node as usize].dot(DVec3::ONE) / period,
         };
         phases.extend(nodes.iter().map(|&node| dots.unwrap_or_else(|| phase(node))));
         points.clear();
         triangles.clear();
         facing.clear();
         let vertex = |point: DVec3, normal: DVec3, phase: f64| Vertex {
-            position: self.relative(point),
-            normal: narrow_point(normal / (self.side * self.side)).to_array(),
+            position: self.draft.relative(point),
+            normal: narrow_point(normal / (self.draft.side * self.draft.side)).to_array(),
             hatch: narrow(phase),
         };
-        let shades = self.shades.map(|shades| shades.corners(nodes, side.element));
+        let shades = self.draft.shades.as_ref().map(|shades| shades.corners(nodes, side.element));
         *is_curved = grid.is_some();
         if let (&[a, b, c, d], Some(grid)) = (&corners[..], grid) {
             for &([u, v], weights) in &grid.points {
@@ -448,8 +434,8 @@ impl SurfaceContext<'_> {
             }));
         }
         mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
-        if !self.colours.is_empty() {
-            let own = side.element.and_then(|element| self.colours.get(element as usize));
+        if !self.colours().is_empty() {
+            let own = side.element.and_then(|element| self.colours().get(element as usize));
             let place = own.map_or(body % BODIES, |&own| own.into());
             mesh.shades.resize(mesh.vertices.len(), -1.0 - narrow_count(place));
         }

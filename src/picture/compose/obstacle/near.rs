@@ -31,9 +31,9 @@ impl Staging<'_> {
     /// The part of the body near the box around points (m); `None` if that is empty.
     pub(super) fn near(&self, points: impl Iterator<Item = DVec3>) -> Option<Near> {
         let skin = self.skin?;
-        let reach = REACH * self.soft;
+        let reach = REACH * self.soft();
         let [low, high] = bounds(points, reach);
-        let place = |node: u32| self.position.get(node as usize).copied();
+        let place = |node: u32| self.draft.position.get(node as usize).copied();
         let near = |[a, b, c]: [u32; 3]| {
             let corners = [place(a)?, place(b)?, place(c)?];
             let [a, b, c] = corners;

@@ -3,13 +3,13 @@
 use super::half_space::{HalfSpace, clipped_line, clipped_polygon};
 use super::shapes::{FACES, corners, edges};
 use super::space::Staging;
+use crate::picture::compose::pointer::Going;
 use crate::picture::layout::steps::{CLOSE, FREE};
 use crate::picture::narrow::narrow;
-use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
 use crate::picture::{Item, Pane, PaneCorner};
 use crate::runner::history::NearObstacles;
-use crate::sim::{Motion, Pose, Shape};
+use crate::sim::{Motion, Obstacle, Pose, Shape};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -43,11 +43,11 @@ pub(super) struct Loose {
 impl Staging<'_> {
     /// The middle of the drawn part of a plate's surface (m), and half its sides (m), which are the same at all times.
     pub(super) fn span(&self, at: usize, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
-        let obstacle = &self.site.obstacles[at];
+        let obstacle = &self.draft.scene.obstacles[at];
         let pivot = obstacle.pivot;
         let [first, second] = Plane::new(normal, 0.0).axes;
-        let farthest = FARTHEST_EDGE * self.site.extent;
-        let (mut low, mut high) = (DVec2::splat(-PLATE * self.site.extent), DVec2::splat(PLATE * self.site.extent));
+        let farthest = FARTHEST_EDGE * self.extent();
+        let (mut low, mut high) = (DVec2::splat(-PLATE * self.extent()), DVec2::splat(PLATE * self.extent()));
         // The box, on the plate at the start, around the corners of a box.
         let around = |[from, to]: [DVec3; 2], before: &Pose| {
             let corners = corners(from.midpoint(to), DVec3::AXES, 0.5 * (to - from));
@@ -59,16 +59,16 @@ impl Staging<'_> {
             [low, places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max)]
         };
         // The plate covers the start of the body,
-        let [from, to] = around(self.start, &obstacle.pose(0.0));
+        let [from, to] = around(self.draft.composer.start_box, &obstacle.pose(0.0));
         if from.max_element() < farthest && to.min_element() > -farthest {
-            let margin = START_MARGIN * self.site.extent;
+            let margin = START_MARGIN * self.extent();
             low = low.min(from - margin).max(DVec2::splat(-farthest));
             high = high.max(to + margin).min(DVec2::splat(farthest));
         }
         // and the places where nodes come near it.
-        if let Some(reached) = self.reach.of(at) {
+        if let Some(reached) = self.draft.composer.reach.of(at) {
             let [from, to] = around(reached, &Pose::NONE);
-            let margin = MARGIN * self.site.extent;
+            let margin = MARGIN * self.extent();
             low = low.min(from - margin);
             high = high.max(to + margin);
         }
@@ -76,24 +76,34 @@ impl Staging<'_> {
         (pose.apply(pivot, pivot + middle.x * first + middle.y * second), 0.5 * (high - low))
     }
 
-    /// The arrows of moving plates.
-    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Item>) {
-        for (at, obstacle) in self.site.obstacles.iter().enumerate() {
+    /// The arrows of moving plates, in the whole panel.
+    pub(in crate::picture) fn arrows(&self, marks: &mut Vec<Item>) {
+        for (at, obstacle) in self.draft.scene.obstacles.iter().enumerate() {
             let Shape::Plate { normal, .. } = obstacle.shape else { continue };
             if obstacle.motion == Motion::Still {
                 continue;
             }
-            let pose = obstacle.pose(self.site.time);
+            let pose = obstacle.pose(self.time());
             let out = pose.rotation * normal;
             let (middle, half) = self.span(at, &pose, normal);
-            let going = self.site.going(obstacle, middle, half.max_element());
+            let going = self.going(obstacle, middle, half.max_element());
             // The arrow is on the side without the body.
             let arriving = going.velocity.dot(out) > 0.0;
             // In the plane a plate is a line.
-            let [thickness, gap] =
-                if self.site.lens.orthographic { [0.0, CLOSE] } else { [THICKNESS * self.site.extent, FREE] };
-            pointers.draw(middle - thickness * out, going, arriving, gap, marks);
+            let [thickness, gap] = if self.draft.flat { [0.0, CLOSE] } else { [THICKNESS * self.extent(), FREE] };
+            let from = middle - thickness * out;
+            self.draft.pointer((from, going), arriving, gap, self.draft.viewport, marks);
         }
+    }
+
+    /// The motion of an obstacle at one of its points (m), and its greatest speed within about `reach` (m) of its
+    /// pivot.
+    fn going(&self, obstacle: &Obstacle, point: DVec3, reach: f64) -> Going {
+        let (pivot, time) = (obstacle.pivot, self.time());
+        let own = obstacle.pose(time).undo(pivot, point);
+        let half = 0.25 * (1.0 / self.draft.scene.frames_per_second);
+        let [before, after] = [time - half, time + half].map(|time| obstacle.pose(time).apply(pivot, own));
+        Going { velocity: (after - before) / (2.0 * half), greatest: obstacle.motion.greatest_speed(reach) }
     }
 
     /// A plate: a thin box that ends at floors.
@@ -101,7 +111,7 @@ impl Staging<'_> {
         let (middle, half) = self.span(at, pose, normal);
         let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let out = pose.rotation * normal;
-        let thickness = THICKNESS * self.site.extent;
+        let thickness = THICKNESS * self.extent();
         // The axes are right-handed, like those of a box.
         let axes = [second, first, out];
         let behind = middle - 0.5 * thickness * out;
@@ -110,30 +120,30 @@ impl Staging<'_> {
         for (face, nodes) in FACES.iter().enumerate() {
             let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
             let polygon = nodes.map(|node| corners[node]);
-            seen[face] = self.site.lens.sees(polygon[0], normal);
+            seen[face] = self.draft.lens.sees(polygon[0], normal);
             let polygon = clipped_polygon(&polygon, floors);
             if seen[face] && polygon.len() > 2 {
                 // The thin faces around it stand out, like the edges of glass.
                 let alpha = PLATE_ALPHA[usize::from(face < 4)];
-                let colour = if face < 4 { self.site.palette.plate_side } else { self.site.palette.plate };
-                let corner = |&at: &DVec3| PaneCorner { position: self.site.relative(at), ..PaneCorner::default() };
+                let colour = if face < 4 { self.palette().plate_side } else { self.palette().plate };
+                let corner = |&at: &DVec3| PaneCorner { position: self.draft.relative(at), ..PaneCorner::default() };
                 panes.push(Pane { corners: polygon.iter().map(corner).collect(), colour, alpha, grid: false });
             }
             if seen[face] {
                 // At a floor it has an edge, too.
                 let on = |point: DVec3, (out, height): HalfSpace| {
-                    (out.dot(point) - height).abs() < 1e-9 * (self.site.extent + height.abs())
+                    (out.dot(point) - height).abs() < 1e-9 * (self.extent() + height.abs())
                 };
                 let next = polygon.iter().cycle().skip(1);
                 let cut = polygon.iter().zip(next).filter(|&(&a, &b)| floors.iter().any(|&at| on(a, at) && on(b, at)));
-                drawn.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.site.relative(end))));
+                drawn.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.draft.relative(end))));
             }
             kept.extend(polygon);
         }
         for ([a, b], [one, other]) in edges() {
             if seen[one] || seen[other] {
                 let edge = clipped_line([corners[a], corners[b]], floors);
-                drawn.extend(edge.map(|ends| ends.map(|end| self.site.relative(end))));
+                drawn.extend(edge.map(|ends| ends.map(|end| self.draft.relative(end))));
             }
         }
         (!panes.is_empty()).then(|| Loose { panes, edges: drawn, plane: (out, out.dot(middle)), corners: kept })
@@ -143,10 +153,15 @@ impl Staging<'_> {
     /// any run, or around the start of the body if none does.
     pub(super) fn wall(&self, at: usize, normal: DVec3, floor: HalfSpace, others: &[HalfSpace]) -> Option<Loose> {
         const CORNERS: usize = 16;
-        let obstacle = &self.site.obstacles[at];
+        let obstacle = &self.draft.scene.obstacles[at];
         let (out, height) = floor;
-        let pose = obstacle.pose(self.site.time);
-        let [from, to] = self.reach.of(at).unwrap_or([self.start[0].midpoint(self.start[1]); 2]);
+        let pose = obstacle.pose(self.time());
+        let [from, to] = self
+            .draft
+            .composer
+            .reach
+            .of(at)
+            .unwrap_or([self.draft.composer.start_box[0].midpoint(self.draft.composer.start_box[1]); 2]);
         let middle = pose.apply(obstacle.pivot, from.midpoint(to));
         let mut middle = middle + (height - out.dot(middle)) * out;
         // Along the slope to the place where it leaves the others.
@@ -158,7 +173,7 @@ impl Staging<'_> {
             }
         }
         let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
-        let reach = WALL * self.site.extent + 0.5 * from.distance(to);
+        let reach = WALL * self.extent() + 0.5 * from.distance(to);
         // The polygon is circumscribed about the circle in which it fades.
         let around = (0..CORNERS).map(|at| {
             let (sine, cosine) = libm::sincos(TAU * at as f64 / CORNERS as f64);
@@ -168,24 +183,25 @@ impl Staging<'_> {
         if polygon.len() < 3 {
             return None;
         }
-        let seen = self.site.lens.sees(middle, out);
+        let seen = self.draft.lens.sees(middle, out);
         let anchor = pose.apply(obstacle.pivot, DVec3::ZERO);
+        let cell = self.draft.cell();
         let shift = axes.map(|axis| {
             // The grid's lines go through the origin of the world, moved with the floor.
-            ((middle - anchor) / self.site.side).dot(axis).rem_euclid(self.cell) / self.cell
+            ((middle - anchor) / self.draft.side).dot(axis).rem_euclid(cell) / cell
         });
         let corner = |&at: &DVec3| {
             let from_middle = axes.map(|axis| (at - middle).dot(axis));
-            let grid = [0, 1].map(|axis| from_middle[axis] / (self.site.side * self.cell) + shift[axis]);
+            let grid = [0, 1].map(|axis| from_middle[axis] / (self.draft.side * cell) + shift[axis]);
             PaneCorner {
-                position: self.site.relative(at),
+                position: self.draft.relative(at),
                 grid: grid.map(narrow),
                 from_middle: from_middle.map(|at| narrow(at / reach)),
             }
         };
         let pane = Pane {
             corners: polygon.iter().map(corner).collect(),
-            colour: self.site.palette.wall,
+            colour: self.palette().wall,
             alpha: WALL_ALPHA[usize::from(!seen)],
             grid: true,
         };
@@ -196,7 +212,7 @@ impl Staging<'_> {
     pub(super) fn in_order(&self, mut slabs: Vec<Loose>) -> Vec<Pane> {
         let distance = |loose: &Loose| {
             let count = loose.corners.len().max(1) as f64;
-            (loose.corners.iter().sum::<DVec3>() / count - self.site.lens.eye).length()
+            (loose.corners.iter().sum::<DVec3>() / count - self.draft.lens.eye).length()
         };
         slabs.sort_by(|one, other| distance(other).total_cmp(&distance(one)));
         if slabs.len() > MANY_SLABS {
@@ -221,9 +237,9 @@ impl Staging<'_> {
 
     /// Whether one slab lies wholly on the eye's side of another's plane, or has the other wholly behind its own.
     fn is_before(&self, front: &Loose, back: &Loose) -> bool {
-        let room = 1e-6 * self.site.extent;
+        let room = 1e-6 * self.extent();
         let on_eyes_side = |(normal, height): HalfSpace, point: DVec3| {
-            (normal.dot(point) - height) * (normal.dot(self.site.lens.eye) - height).signum()
+            (normal.dot(point) - height) * (normal.dot(self.draft.lens.eye) - height).signum()
         };
         front.corners.iter().all(|&at| on_eyes_side(back.plane, at) >= -room)
             || back.corners.iter().all(|&at| on_eyes_side(front.plane, at) <= room)

@@ -1,8 +1,8 @@
 //! The surface of bodies: faces of elements, and the fine surfaces that bodies carry in their place.
 
-use super::camera::Lens;
-use super::carried::Fine;
-use super::ears::Ears;
+use crate::picture::camera::Lens;
+use crate::picture::compose::carried::Fine;
+use crate::picture::ears::Ears;
 use crate::sim::Assembly;
 use glam::DVec3;
 use std::ops::Range;

@@ -1,13 +1,14 @@
 //! Lines instead of surfaces: the springs of a model, or the edges of the elements.
 
-use super::field::{self, NOWHERE};
-use super::measures::SMALL_ELEMENT;
-use super::narrow::{narrow, narrow_point};
-use super::order::farthest_first;
-use super::shell::is_broken;
-use super::{Bead, Second, Stroke};
+use super::draft::Draft;
 use crate::colour::{Colour, mixed};
-use crate::look::{ColourScale, Palette};
+use crate::look::ColourScale;
+use crate::picture::field::{self, NOWHERE};
+use crate::picture::measures::SMALL_ELEMENT;
+use crate::picture::narrow::narrow;
+use crate::picture::order::farthest_first;
+use crate::picture::shell::is_broken;
+use crate::picture::{Bead, Second, Stroke};
 use crate::sim::Body;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -74,24 +75,9 @@ fn each_once<'a>(of_elements: impl Iterator<Item = &'a Vec<[u32; 2]>>) -> Vec<[u
 /// A line, and the distance of its middle from the eye (m).
 type Placed = (f64, Stroke);
 
-/// The data for lines in one panel.
+/// Draws the lines of one panel.
 pub(super) struct Wire<'a> {
-    pub(super) body: &'a Body,
-    pub(super) position: &'a [DVec3],
-    /// The panel's origin (m).
-    pub(super) origin: DVec3,
-    /// The panel's unit of length (m).
-    pub(super) side: f64,
-    /// The eye (m), and the unit vector away from the viewer.
-    pub(super) eye: DVec3,
-    pub(super) forward: DVec3,
-    pub(super) palette: &'a Palette,
-    /// Thickness of lines, relative to the reference picture.
-    pub(super) line: f64,
-    /// Length of an element's edge (px).
-    pub(super) element: f64,
-    /// Whether surfaces are drawn, too.
-    pub(super) surfaces: bool,
+    pub(super) draft: &'a Draft<'a>,
     /// The field that colours lines and nodes without surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
 }
@@ -99,12 +85,17 @@ pub(super) struct Wire<'a> {
 impl Wire<'_> {
     /// The wire without the colours of a field if surfaces show them.
     pub(super) fn without_surfaces(&self) -> Self {
-        Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
+        Self { shades: self.shades.filter(|_| !self.surfaces()), ..*self }
+    }
+
+    /// Whether surfaces are drawn, too.
+    fn surfaces(&self) -> bool {
+        self.draft.scene.view.visible.surfaces
     }
 
     /// Whether springs inside the body are invisible.
     pub(super) fn hides_inside(&self) -> bool {
-        self.surfaces && self.element < SEEN_THROUGH
+        self.surfaces() && self.draft.element < SEEN_THROUGH
     }
 
     /// Springs, the farthest first. With a scale and its colours, each has the colour of its strain, and more strained
@@ -113,10 +104,10 @@ impl Wire<'_> {
         let haze = self.haze();
         if let Some((ramp, scale)) = strain {
             let strokes = springs.iter().map(|&ends| {
-                let strain = spring_strain(self.body, self.position, ends);
+                let strain = spring_strain(self.draft.body, &self.draft.position, ends);
                 let share = strained_share(strain, scale.range);
                 let place = field::place(scale.of_spring(strain), scale.range);
-                let own = if place == NOWHERE { self.palette.spring } else { field::colour(ramp, place) };
+                let own = if place == NOWHERE { self.draft.palette.spring } else { field::colour(ramp, place) };
                 let (depth, stroke) = self.strained(ends, own, &|at| STRAINED_HAZE * haze(at) * (1.0 - share));
                 (depth, ((share * STRAIN_STEPS).round(), stroke))
             });
@@ -126,10 +117,10 @@ impl Wire<'_> {
         }
         let mut strokes = Vec::with_capacity(springs.len());
         for &ends in springs {
-            self.stroke(ends, self.palette.spring, SPRING, &haze, &mut strokes);
+            self.stroke(ends, self.draft.palette.spring, SPRING, &haze, &mut strokes);
         }
-        if self.surfaces {
-            let second = Second::OnBody(self.palette.spring_on_body);
+        if self.surfaces() {
+            let second = Second::OnBody(self.draft.palette.spring_on_body);
             strokes.iter_mut().for_each(|(_, stroke)| stroke.second = second);
         }
         farthest_first(strokes).collect()
@@ -137,11 +128,11 @@ impl Wire<'_> {
 
     /// A spring in the colour of its strain.
     fn strained(&self, ends: [u32; 2], own: Colour, haze: &dyn Fn(DVec3) -> f64) -> Placed {
-        let ends = ends.map(|node| self.position[node as usize]);
-        let faded = |colour| mixed(colour, self.palette.background, haze(ends[0].midpoint(ends[1])));
+        let ends = ends.map(|node| self.draft.position[node as usize]);
+        let faded = |colour| mixed(colour, self.draft.palette.background, haze(ends[0].midpoint(ends[1])));
         let (depth, plain) = self.straight(ends, [faded(own); 2], CASED * SPRING);
         // A casing keeps lines of all colours visible, over surfaces, the ground and other lines.
-        (depth, Stroke { second: Second::Casing(faded(self.palette.casing)), ..plain })
+        (depth, Stroke { second: Second::Casing(faded(self.draft.palette.casing)), ..plain })
     }
 
     /// The edges of all elements, the farthest first, and the edges of turned-over ones again above them.
@@ -156,11 +147,11 @@ impl Wire<'_> {
         let is_whole = |element: usize| !is_broken(broken, element as u32);
         if !only_turned_over {
             for &ends in edges.of_whole(broken).iter() {
-                self.stroke(ends, self.palette.spring, EDGE, &haze, &mut strokes);
+                self.stroke(ends, self.draft.palette.spring, EDGE, &haze, &mut strokes);
             }
             let elements = edges.of_elements.iter().enumerate();
             let elements = elements.filter(|&(element, edges)| edges.is_empty() && is_whole(element));
-            elements.for_each(|(element, _)| self.spokes(element, self.palette.spring, EDGE, &mut strokes));
+            elements.for_each(|(element, _)| self.spokes(element, self.draft.palette.spring, EDGE, &mut strokes));
         }
         let mut strokes: Vec<_> = farthest_first(strokes).collect();
         let mut alarm = Vec::new();
@@ -168,10 +159,10 @@ impl Wire<'_> {
         for (element, of_element) in edges.of_elements.iter().enumerate() {
             if is_whole(element) && turned_over.get(element).copied().unwrap_or(false) {
                 for &ends in of_element {
-                    plain.stroke(ends, self.palette.alarm, ALARM_EDGE, &haze, &mut alarm);
+                    plain.stroke(ends, self.draft.palette.alarm, ALARM_EDGE, &haze, &mut alarm);
                 }
                 if of_element.is_empty() {
-                    plain.spokes(element, self.palette.alarm, ALARM_EDGE, &mut alarm);
+                    plain.spokes(element, self.draft.palette.alarm, ALARM_EDGE, &mut alarm);
                 }
             }
         }
@@ -184,14 +175,16 @@ impl Wire<'_> {
         let mut strokes = Vec::new();
         for &element in elements.iter().filter(|&&element| !is_broken(broken, element as u32)) {
             let over = turned_over.get(element).copied().unwrap_or(false);
-            let edges = self.body.topology().edges_of(element);
+            let edges = self.draft.body.topology().edges_of(element);
             if edges.is_empty() {
-                self.spokes(element, self.palette.edge, BARE, &mut strokes);
+                self.spokes(element, self.draft.palette.edge, BARE, &mut strokes);
             }
-            edges.iter().for_each(|&ends| self.stroke(ends, self.palette.edge, BARE, &|_| 0.0, &mut strokes));
+            edges.iter().for_each(|&ends| self.stroke(ends, self.draft.palette.edge, BARE, &|_| 0.0, &mut strokes));
             if over {
                 let plain = Wire { shades: None, ..*self };
-                edges.iter().for_each(|&ends| plain.stroke(ends, self.palette.alarm, EDGE, &|_| 0.0, &mut strokes));
+                edges
+                    .iter()
+                    .for_each(|&ends| plain.stroke(ends, self.draft.palette.alarm, EDGE, &|_| 0.0, &mut strokes));
             }
         }
         strokes.into_iter().map(|(_, stroke)| stroke).collect()
@@ -200,19 +193,19 @@ impl Wire<'_> {
     /// Nodes, the farthest first.
     pub(super) fn beads(&self, radius: f64) -> Vec<Bead> {
         let haze = self.haze();
-        let nodes = self.position.iter().enumerate().map(|(node, &at)| (self.depth(at), node));
+        let nodes = self.draft.position.iter().enumerate().map(|(node, &at)| (self.depth(at), node));
         let bead = |node: usize| {
             // A disc is light, so that its rim is visible; distant rims are fainter.
-            let faded = 0.8 * haze(self.position[node]);
+            let faded = 0.8 * haze(self.draft.position[node]);
             Bead {
-                at: self.relative(self.position[node]),
+                at: self.draft.relative(self.draft.position[node]),
                 radius: narrow(radius),
                 colour: mixed(
-                    self.place_colour(node as u32).unwrap_or(self.palette.node),
-                    self.palette.background,
+                    self.place_colour(node as u32).unwrap_or(self.draft.palette.node),
+                    self.draft.palette.background,
                     0.5 * faded,
                 ),
-                rim: mixed(self.palette.edge, self.palette.background, faded),
+                rim: mixed(self.draft.palette.edge, self.draft.palette.background, faded),
             }
         };
         farthest_first(nodes.collect()).map(bead).collect()
@@ -220,14 +213,14 @@ impl Wire<'_> {
 
     /// Lines from the middle of an element without edges to its nodes.
     fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
-        let nodes = &self.body.elements()[element];
-        let middle = nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+        let nodes = &self.draft.body.elements()[element];
+        let middle = nodes.iter().map(|&node| self.draft.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
         for &node in nodes {
-            let ends = [middle, self.position[node as usize]];
+            let ends = [middle, self.draft.position[node as usize]];
             strokes.push(match self.place_colour(node) {
                 None => self.straight(ends, [colour; 2], width),
                 Some(own) => {
-                    let second = Second::Casing(self.palette.casing);
+                    let second = Second::Casing(self.draft.palette.casing);
                     let (depth, plain) = self.straight(ends, [own; 2], CASED * width);
                     (depth, Stroke { second, ..plain })
                 }
@@ -244,8 +237,8 @@ impl Wire<'_> {
         haze: &dyn Fn(DVec3) -> f64,
         strokes: &mut Vec<Placed>,
     ) {
-        let [from, to] = [a, b].map(|node| self.position[node as usize]);
-        let faded = |colour, point| mixed(colour, self.palette.background, haze(point));
+        let [from, to] = [a, b].map(|node| self.draft.position[node as usize]);
+        let faded = |colour, point| mixed(colour, self.draft.palette.background, haze(point));
         let places = self.shades.map(|(ramp, places)| (ramp, [a, b].map(|node| places[node as usize])));
         let Some((ramp, places)) = places.filter(|(_, places)| !places.contains(&NOWHERE)) else {
             return strokes.push(self.straight([from, to], [faded(colour, from), faded(colour, to)], width));
@@ -256,28 +249,28 @@ impl Wire<'_> {
             let shares = [piece, piece + 1].map(|at| at as f64 / pieces);
             let ends = shares.map(|share| from.lerp(to, share));
             let colours = shares.map(|share| field::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
-            let casing = faded(self.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
+            let casing = faded(self.draft.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
             let (depth, plain) = self.straight(ends, colours, CASED * width);
             strokes.push((depth, Stroke { second: Second::Casing(casing), ..plain }));
         }
     }
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Placed {
-        let strength = (self.element / f64::from(SMALL_ELEMENT)).clamp(0.0, 1.0);
+        let strength = (self.draft.element / f64::from(SMALL_ELEMENT)).clamp(0.0, 1.0);
         let behind = (BEHIND * strength * strength).round() as u8;
         let stroke = Stroke {
-            ends: ends.map(|end| self.relative(end)),
+            ends: ends.map(|end| self.draft.relative(end)),
             colours,
             second: Second::None,
-            behind: if self.surfaces { behind.max(1) } else { 0 },
-            width: narrow(width * self.line * strength.max(THINNEST)),
+            behind: if self.surfaces() { behind.max(1) } else { 0 },
+            width: narrow(width * self.draft.scale.line() * strength.max(THINNEST)),
         };
         (self.depth(ends[0].midpoint(ends[1])), stroke)
     }
 
     /// The distance of a point from the eye (m), along its line of sight.
     fn depth(&self, point: DVec3) -> f64 {
-        (point - self.eye).dot(self.forward)
+        (point - self.draft.lens.eye).dot(self.draft.lens.forward)
     }
 
     fn place_colour(&self, node: u32) -> Option<Colour> {
@@ -286,17 +279,13 @@ impl Wire<'_> {
         Some(field::colour(ramp, place))
     }
 
-    fn relative(&self, point: DVec3) -> [f32; 3] {
-        narrow_point((point - self.origin) / self.side).to_array()
-    }
-
     /// The share of the background at a point; zero with surfaces.
     fn haze(&self) -> impl Fn(DVec3) -> f64 {
-        let depth = |point: &DVec3| point.dot(self.forward);
-        let depths = self.position.iter().map(depth);
+        let depth = |point: &DVec3| point.dot(self.draft.lens.forward);
+        let depths = self.draft.position.iter().map(depth);
         let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
-        let most = if self.surfaces || high - low < 1e-9 * self.side { 0.0 } else { HAZE };
-        let forward = self.forward;
+        let most = if self.surfaces() || high - low < 1e-9 * self.draft.side { 0.0 } else { HAZE };
+        let forward = self.draft.lens.forward;
         move |point| most * ((point.dot(forward) - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
 }

@@ -16,32 +16,33 @@ impl Staging<'_> {
     /// The obstacles near the body but the ground, the nearest first.
     pub(super) fn occluders(&self) -> Vec<Occluder> {
         let Some(skin) = self.skin else { return Vec::new() };
-        let nodes = || skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
+        let nodes = || skin.nodes.iter().filter_map(|&node| self.draft.position.get(node as usize));
         let middle = nodes().sum::<DVec3>() / nodes().count().max(1) as f64;
         let size = nodes().map(|at| at.distance(middle)).fold(0.0, f64::max);
-        let time = self.site.time;
+        let time = self.time();
         let mut near: Vec<_> = self
-            .site
+            .draft
+            .scene
             .obstacles
             .iter()
             .filter(|obstacle| self.ground.is_none() || obstacle.floor(time) != self.ground)
             .map(|obstacle| (height(&obstacle.shape, obstacle.pose(time).undo(obstacle.pivot, middle)), obstacle))
-            .filter(|(distance, _)| *distance < size + REACH * self.soft)
+            .filter(|(distance, _)| *distance < size + REACH * self.soft())
             .collect();
         near.sort_by(|one, other| one.0.total_cmp(&other.0));
         near.into_iter().take(MOST_OCCLUDERS).map(|(_, obstacle)| self.occluder(obstacle)).collect()
     }
 
     fn occluder(&self, obstacle: &Obstacle) -> Occluder {
-        let pose = obstacle.pose(self.site.time);
+        let pose = obstacle.pose(self.time());
         let place = |point: DVec3| pose.apply(obstacle.pivot, point);
         // With rounded edges the direction out of the box is also defined just inside.
-        let round = |half: DVec3| half.min_element().min(ROUND * self.soft);
+        let round = |half: DVec3| half.min_element().min(ROUND * self.soft());
         let (centre, half, turn, radius) = match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => {
-                let (normal, height) = half_space(obstacle, self.site.time).unwrap_or((DVec3::Y, 0.0));
-                let foot = self.site.origin + (height - normal.dot(self.site.origin)) * normal;
-                let half = DVec3::splat(LARGE * self.soft);
+                let (normal, height) = half_space(obstacle, self.time()).unwrap_or((DVec3::Y, 0.0));
+                let foot = self.draft.origin + (height - normal.dot(self.draft.origin)) * normal;
+                let half = DVec3::splat(LARGE * self.soft());
                 (foot - half.x * normal, half - round(half), DQuat::from_rotation_arc(DVec3::Y, normal), round(half))
             }
             Shape::Sphere { centre, radius } => (place(centre), DVec3::ZERO, DQuat::IDENTITY, radius),
@@ -56,10 +57,10 @@ impl Staging<'_> {
             }
         };
         Occluder {
-            centre: narrow_point((centre - self.site.origin) / self.site.side),
-            half: narrow_point(half / self.site.side),
+            centre: narrow_point((centre - self.draft.origin) / self.draft.side),
+            half: narrow_point(half / self.draft.side),
             rotation: turn.to_array().map(narrow),
-            radius: narrow(radius / self.site.side),
+            radius: narrow(radius / self.draft.side),
             is_clear: matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }),
         }
     }

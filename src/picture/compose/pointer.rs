@@ -1,11 +1,10 @@
 //! Arrows in the direction of motion of obstacles and grips.
 
-use super::Item;
-use super::arrows::{arrow, inside};
-use super::camera::Lens;
-use super::layout::steps::{BESIDE, ROOM};
-use super::layout::{Rectangle, Scale};
-use crate::look::Palette;
+use super::draft::Draft;
+use crate::picture::Item;
+use crate::picture::arrows::{arrow, inside};
+use crate::picture::layout::Rectangle;
+use crate::picture::layout::steps::{BESIDE, ROOM};
 use glam::{DVec2, DVec3};
 
 /// From this part of the greatest speed on, the arrow has its full length.
@@ -20,19 +19,18 @@ pub(super) struct Going {
     pub(super) greatest: f64,
 }
 
-/// Draws arrows into one panel.
-pub(super) struct Pointers<'a> {
-    pub(super) lens: &'a Lens,
-    /// The room for arrows.
-    pub(super) room: Rectangle,
-    pub(super) scale: Scale,
-    pub(super) palette: &'a Palette,
-}
-
-impl Pointers<'_> {
+impl Draft<'_> {
     /// The arrow of an object at a point (m), from that point or, with `arriving`, to it, at a distance (px in the reference
-    /// picture). It grows with the square root of the speed, so that it fades gently. A resting object has none.
-    pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Item>) {
+    /// picture). It grows with the square root of the speed, so that it fades gently, and ends where its
+    /// `room` ends. A resting object has none.
+    pub(super) fn pointer(
+        &self,
+        (point, going): (DVec3, Going),
+        arriving: bool,
+        gap: f64,
+        room: Rectangle,
+        marks: &mut Vec<Item>,
+    ) {
         let speed = going.velocity.length();
         let share = (speed / (FAST * going.greatest)).min(1.0);
         if !(share > 0.0 && speed.is_finite()) {
@@ -44,14 +42,14 @@ impl Pointers<'_> {
         let way = going.velocity / speed;
         let Some((to, _)) = self.lens.project(point + way / pixels) else { return };
         let [from, to] = [from, to].map(DVec2::from);
-        let unit = self.scale.line();
+        let (unit, palette) = (self.scale.line(), &self.composer.palette);
         // Motion straight towards the viewer has a short arrow.
         let length = ROOM * unit * share.sqrt() * from.distance(to).min(1.0);
         let along = (to - from).normalize_or_zero();
         let gap = gap * unit;
         let ends = if arriving { [-gap - length, -gap] } else { [gap, gap + length] };
         let ends = ends.map(|at| from + at * along);
-        let arrow = |(ends, opacity)| arrow(ends, unit, self.palette.pointer, self.palette.background).faded(opacity);
-        marks.extend(inside(ends, self.room, BESIDE * unit).and_then(arrow));
+        let arrow = |(ends, opacity)| arrow(ends, unit, palette.pointer, palette.background).faded(opacity);
+        marks.extend(inside(ends, room, BESIDE * unit).and_then(arrow));
     }
 }

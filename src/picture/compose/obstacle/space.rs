@@ -1,47 +1,70 @@
 //! All obstacles of a panel.
 
+use super::Staged;
 use super::half_space::HalfSpace;
 use super::shapes::{corners, rod};
-use super::{Site, Staged};
-use crate::picture::skin::Skin;
+use crate::look::Palette;
+use crate::picture::compose::draft::Draft;
+use crate::picture::compose::skin::Skin;
+use crate::picture::shell::{boundaries, triangles};
 use crate::picture::{Line, Obstacles};
-use crate::runner::history::NearObstacles;
-use crate::sim::Shape;
+use crate::sim::{Shape, geometry};
 use glam::DVec3;
 
-/// The data for the obstacles of one panel.
+/// Draws the obstacles of one panel.
 pub(in crate::picture) struct Staging<'a> {
-    pub(in crate::picture) site: Site<'a>,
-    /// Distance of the grid's lines (sides).
-    pub(in crate::picture) cell: f64,
+    pub(super) draft: &'a Draft<'a>,
     /// The floor that is drawn as ground.
-    pub(in crate::picture) ground: Option<HalfSpace>,
-    /// The nodes now (m).
-    pub(in crate::picture) position: &'a [DVec3],
+    pub(super) ground: Option<HalfSpace>,
     /// The surface of the body; `None` if it is not drawn.
-    pub(in crate::picture) skin: Option<&'a Skin>,
+    pub(super) skin: Option<&'a Skin>,
     /// The triangles of nodes that are left of it, if elements are broken.
-    pub(in crate::picture) left: Option<Vec<[u32; 3]>>,
-    /// The width of rims in the plane (m).
-    pub(in crate::picture) rim: f64,
-    /// Unit of soft distances (m).
-    pub(in crate::picture) soft: f64,
-    /// The box around the nodes at the start (m).
-    pub(in crate::picture) start: [DVec3; 2],
-    /// The places where nodes of all runs come near plates and walls at any time.
-    pub(in crate::picture) reach: &'a NearObstacles,
+    pub(super) left: Option<Vec<[u32; 3]>>,
 }
 
-impl Staging<'_> {
+impl<'a> Staging<'a> {
+    /// The obstacles of a panel.
+    pub(in crate::picture) fn new(draft: &'a Draft<'a>) -> Self {
+        let Draft { scene, body, bodies, run, .. } = *draft;
+        let broken = &run.snapshot.broken;
+        let left = || triangles(body, &boundaries(body, &[], broken)[0]);
+        Self {
+            draft,
+            ground: geometry::ground(&scene.obstacles, run.snapshot.time),
+            skin: (scene.view.visible.surfaces && !draft.diverged).then(|| bodies.cage()),
+            left: broken.contains(&true).then(left),
+        }
+    }
+
+    /// The time of the panel's state (s).
+    pub(super) fn time(&self) -> f64 {
+        self.draft.run.snapshot.time
+    }
+
+    /// The size of the body (m).
+    pub(super) fn extent(&self) -> f64 {
+        self.draft.composer.extent
+    }
+
+    /// Unit of soft distances (m).
+    pub(super) fn soft(&self) -> f64 {
+        self.draft.bodies.soft * self.draft.side
+    }
+
+    /// The colours, also of a run that has diverged.
+    pub(super) fn palette(&self) -> &Palette {
+        &self.draft.composer.palette
+    }
+
     /// All obstacles but the ground.
     pub(in crate::picture) fn draw(&self, lines: &mut Vec<Line>) -> (Obstacles, Staged) {
-        if self.site.lens.orthographic {
+        if self.draft.lens.orthographic {
             return self.flat();
         }
         let (mut solids, mut staged, mut slabs) = (Vec::new(), Staged::default(), Vec::new());
-        let floors: Vec<_> = self.site.obstacles.iter().map(|obstacle| obstacle.floor(self.site.time)).collect();
-        for (at, obstacle) in self.site.obstacles.iter().enumerate() {
-            let pose = obstacle.pose(self.site.time);
+        let floors: Vec<_> = self.draft.scene.obstacles.iter().map(|obstacle| obstacle.floor(self.time())).collect();
+        for (at, obstacle) in self.draft.scene.obstacles.iter().enumerate() {
+            let pose = obstacle.pose(self.time());
             match obstacle.shape {
                 Shape::Floor { normal, .. } => {
                     let Some(floor) = floors[at] else { continue };
