@@ -14,6 +14,7 @@ use crate::runner::RunFrame;
 use crate::scene::{Run, Scene, brakes_rotation};
 use crate::sim::model::ElasticModel;
 use crate::sim::{Body, Divergence, Snapshot, Status};
+use std::sync::Arc;
 
 /// The name of counts.
 const TURNED_OVER: &str = "turned over";
@@ -41,7 +42,7 @@ pub(super) fn short_description(scene: &Scene, run: &Run) -> String {
         let rotation = |model: &dyn ElasticModel, body: &Body| {
             if brakes_rotation(model, body) && scene.braked(run).is_some() { ", also of rotation" } else { "" }
         };
-        let all = |(model, body): (&dyn ElasticModel, _)| {
+        let all = |(model, body): (&dyn ElasticModel, &Arc<Body>)| {
             words(model, body)
                 + rotation(model, body)
                 + &unusual_choices(model, body)

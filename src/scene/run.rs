@@ -105,8 +105,8 @@ impl Run {
     }
 
     /// Each model with its body at rest.
-    pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
-        self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
+    pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Arc<Body>)> {
+        self.models.iter().map(|model| &**model).zip(self.bodies.bodies())
     }
 
     /// Where its nodes are placed (m), from which displacements count.

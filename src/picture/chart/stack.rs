@@ -17,6 +17,7 @@ use crate::runner::history::History;
 use crate::scene::{Run, Scene};
 use crate::sim::model::ElasticModel;
 use crate::sim::{Body, Diagnostic};
+use std::sync::Arc;
 
 /// The most numbers beside a chart.
 const MOST_TICKS: usize = 4;
@@ -173,7 +174,7 @@ fn of_parts(diagnostic: Diagnostic, of_scenes: &[(&Scene, &History)]) -> String 
             return elements(run.body());
         }
         let breaking = run.models_and_bodies().filter(|(model, body)| model.properties(body).breakable.is_some());
-        let of_body = |(model, body): (&dyn ElasticModel, &Body)| match model.springs().len() {
+        let of_body = |(model, body): (&dyn ElasticModel, &Arc<Body>)| match model.springs().len() {
             0 => elements(body),
             springs => vec![(springs, "springs")],
         };

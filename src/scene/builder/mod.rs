@@ -35,7 +35,7 @@ use super::resolve::Typed;
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
 use super::{Limits, Scene, structure};
-use crate::look::{Plot, Theme, TypedView};
+use crate::look::{Plot, Theme};
 use crate::reading::collector::Collector;
 use crate::sim::{Field, Integrator};
 use serde::Serialize;
@@ -84,31 +84,8 @@ impl Scene {
     /// assert!(text.contains("`body.elements[0][2]`: there is no node 3; the body has nodes 0 to 2"), "{text}");
     /// ```
     pub fn builder(name: impl Into<String>, body: BodyBuilder) -> SceneBuilder {
-        let time = TimeFile {
-            duration: 1.0,
-            start: None,
-            until: None,
-            step: None,
-            tolerance: None,
-            frames_per_second: 60.0,
-            every: None,
-            integrator: Integrator::default(),
-        };
-        let file = SceneFile {
-            title: Some(name.into()),
-            gravity: None,
-            mass_damping: None,
-            time: None,
-            body: vec![Some(body.0)],
-            run: Vec::new(),
-            obstacle: Vec::new(),
-            contact: None,
-            hold: Vec::new(),
-            grab: Vec::new(),
-            load: Vec::new(),
-            probe: Vec::new(),
-            view: TypedView::default(),
-        };
+        let time = TimeFile { duration: 1.0, frames_per_second: 60.0, ..TimeFile::default() };
+        let file = SceneFile { title: Some(name.into()), body: vec![Some(body.0)], ..SceneFile::default() };
         SceneBuilder { file, time }
     }
 }

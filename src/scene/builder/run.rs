@@ -53,7 +53,7 @@ impl RunBuilder {
     /// ```
     pub fn by_body(models: impl IntoIterator<Item = (impl Into<String>, ModelParameters)>) -> Self {
         let models = models.into_iter().map(|(name, model)| (name.into(), ModelFile::Typed(model)));
-        Self(RunFile { models: Some(models.collect()), ..Self::empty() })
+        Self(RunFile { models: Some(models.collect()), ..RunFile::default() })
     }
 
     /// A run with a model of your own. The scene then has no digest.
@@ -62,14 +62,7 @@ impl RunBuilder {
     }
 
     fn of(model: ModelFile) -> Self {
-        Self(RunFile { model: Some(model), ..Self::empty() })
-    }
-
-    /// A run without a model.
-    fn empty() -> RunFile {
-        let (name, bodies, model, models, states, scale, up, step, tolerance, integrator, kernel, colour) =
-            Default::default();
-        RunFile { name, bodies, model, models, states, scale, up, step, tolerance, integrator, kernel, colour }
+        Self(RunFile { model: Some(model), ..RunFile::default() })
     }
 
     setters! {

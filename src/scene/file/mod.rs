@@ -36,7 +36,7 @@ pub(super) const LARGEST: f64 = 1e30;
 
 // A part with a mistake is `None`.
 /// A scene: bodies, one world, and several runs.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SceneFile {
     /// The subject of the scene. Default: the file's name.

@@ -6,45 +6,43 @@ use super::grips::SceneGrip;
 use super::loads::SceneLoad;
 use super::recordings::{ReadRecording, Shown};
 use super::steps::Steps;
-use crate::reading::captions::typed;
+use crate::reading::captions;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::words;
 use crate::scene::file::RunFile;
-use crate::scene::{ALL_BODIES, Recorded, Run, SceneBody};
+use crate::scene::{ALL_BODIES, Run, SceneBody};
 use crate::sim::model::{ElasticModel, Misfit};
-use crate::sim::{Assembly, Body, Grip, Integrator, Kernel, Loading, State};
+use crate::sim::{Assembly, Body, Integrator, Kernel, State};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The bodies of a run with their models and constraints.
-pub(super) struct Parts {
-    /// Their places in the scene.
-    of: Vec<usize>,
-    pub(super) bodies: Arc<Assembly>,
-    /// The initial state of all of them.
-    initial: State,
-    pub(super) models: Vec<Arc<dyn ElasticModel>>,
-    pub(super) grips: Vec<Grip>,
-    grip_names: Vec<String>,
-    loads: Vec<Arc<Loading>>,
-    recording: Option<Arc<Recorded>>,
+/// The code that computes the steps of a run fastest.
+fn fastest(run: &Run, integrator: Integrator) -> Kernel {
+    let mut kernels = run.models.iter().map(|model| Kernel::of(&**model, integrator));
+    kernels.find(|kernel| *kernel != Kernel::Fast).unwrap_or(Kernel::Fast)
 }
 
-impl Parts {
-    /// Each model with its body.
-    pub(super) fn iter(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Arc<Body>)> {
-        self.models.iter().map(|model| &**model).zip(self.bodies.bodies())
-    }
-
-    /// Whether a model moves its nodes itself.
-    pub(super) fn is_projected(&self) -> bool {
-        self.iter().any(|(model, body)| model.projection(body).is_some())
-    }
-
-    /// The code that computes steps fastest.
-    fn fastest(&self, integrator: Integrator) -> Kernel {
-        let mut kernels = self.models.iter().map(|model| Kernel::of(&**model, integrator));
-        kernels.find(|kernel| *kernel != Kernel::Fast).unwrap_or(Kernel::Fast)
+/// A run of some bodies without models. Its step depends on all runs, and is not known yet.
+fn bare(typed: &RunFile, of: Vec<usize>, (bodies, initial): (Arc<Assembly>, State)) -> Run {
+    Run {
+        name: typed.name.clone(),
+        of,
+        bodies,
+        initial,
+        rest: None,
+        comes_to_rest: None,
+        placed: None,
+        models: Vec::new(),
+        recording: None,
+        grips: Vec::new(),
+        grip_names: Vec::new(),
+        loads: Vec::new(),
+        integrator: Integrator::default(),
+        step: f64::NAN,
+        tolerance: None,
+        kernel: Kernel::Reference,
+        place: 0,
+        colour: typed.colour.map(|colour| colour.0),
     }
 }
 
@@ -67,57 +65,46 @@ pub(super) struct Resolved<'a> {
 }
 
 impl Resolved<'_> {
-    /// The bodies of each run with their models, and the own bodies of recordings; `None` after a mistake in a model or a
-    /// recording.
-    fn parts(
+    /// The runs without their steps, and the own bodies of recordings; `None` after a mistake in a model or a recording.
+    fn without_steps(
         self,
         runs: &[Option<RunFile>],
         recordings: Vec<Option<ReadRecording>>,
         report: &mut Collector<'_>,
-    ) -> Option<(Vec<Parts>, Vec<SceneBody>)> {
+    ) -> Option<(Vec<Run>, Vec<SceneBody>)> {
         let mut own = Vec::new();
         // Runs of the same bodies share them.
         let mut known: BTreeMap<&[usize], (Arc<Assembly>, State)> = BTreeMap::new();
-        let mut parts = |at: usize, run: &Option<RunFile>, read: Option<ReadRecording>| {
-            let (Choice { of, models }, run) = self.choices[at].as_ref().zip(run.as_ref())?;
+        let mut resolved = |at: usize, typed: &Option<RunFile>, read: Option<ReadRecording>| {
+            let (Choice { of, models }, typed) = self.choices[at].as_ref().zip(typed.as_ref())?;
             let all = || together(of.iter().map(|&body| &self.bodies[body]));
             let (bodies, initial) = known.entry(of).or_insert_with(all).clone();
-            if run.states.is_none() {
+            if typed.states.is_none() {
                 let models = self.models(of, models, report)?;
                 let (grips, grip_names) = self.grips.iter().flat_map(|grip| grip.in_run(of, &bodies)).unzip();
                 let loads = self.loads.iter().flat_map(|load| load.in_run(of, &bodies)).map(Arc::new).collect();
-                return Some(Parts {
-                    of: of.clone(),
-                    bodies,
-                    initial,
-                    models,
-                    grips,
-                    grip_names,
-                    loads,
-                    recording: None,
-                });
+                return Some(Run { models, grips, grip_names, loads, ..bare(typed, of.clone(), (bodies, initial)) });
             }
-            let (recorded, shown) = read?.shown(run, bodies.whole(), report)?;
-            let (of, bodies, initial) = match shown {
-                Shown::Bodies(start) => (of.clone(), bodies, *start),
+            let (recorded, shown) = read?.shown(typed, bodies.whole(), report)?;
+            let run = match shown {
+                Shown::Bodies(start) => bare(typed, of.clone(), (bodies, *start)),
                 Shown::Own(body) => {
                     if self.bodies.iter().any(|other| other.name == body.name) || body.name == ALL_BODIES {
-                        let name = words::quoted(&run.name);
+                        let name = words::quoted(&typed.name);
                         let message =
                             format!("{name} shows a body of its own, which has this name, too, as has another");
                         report.at(&key_path!["run", at, "name"], message, "give the run another name");
                         return None;
                     }
-                    let (bodies, initial) = together(std::iter::once(&*body));
+                    let together = together(std::iter::once(&*body));
                     own.push(*body);
-                    (vec![self.bodies.len() + own.len() - 1], bodies, initial)
+                    bare(typed, vec![self.bodies.len() + own.len() - 1], together)
                 }
             };
-            let (models, grips, grip_names, loads) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            Some(Parts { of, bodies, initial, models, grips, grip_names, loads, recording: Some(recorded) })
+            Some(Run { recording: Some(recorded), ..run })
         };
         // Mistakes of all runs are reported.
-        let all: Vec<_> = (0..).zip(runs).zip(recordings).map(|((at, run), read)| parts(at, run, read)).collect();
+        let all: Vec<_> = (0..).zip(runs).zip(recordings).map(|((at, run), read)| resolved(at, run, read)).collect();
         Some((all.into_iter().collect::<Option<_>>()?, own))
     }
 
@@ -142,16 +129,22 @@ impl Resolved<'_> {
         Some(models)
     }
 
-    /// A run; `None` after reporting a mistake.
-    fn run(self, at: usize, run: &RunFile, parts: Parts, steps: &Steps<'_>, report: &mut Collector<'_>) -> Option<Run> {
-        let integrator = steps.integrator(run);
-        let (step, tolerance) = steps.of(at, run, parts.recording.as_deref(), report)?;
-        let refusals =
-            parts.iter().map(|(model, body)| integrator.refusal(model, body, steps.mass_damping)).enumerate();
+    /// A run with its step; `None` after reporting a mistake.
+    fn with_step(
+        self,
+        at: usize,
+        (typed, run): (&RunFile, Run),
+        steps: &Steps<'_>,
+        report: &mut Collector<'_>,
+    ) -> Option<Run> {
+        let integrator = steps.integrator(typed);
+        let (step, tolerance) = steps.of(at, typed, run.recording.as_deref(), report)?;
+        let parts = run.models_and_bodies();
+        let refusals = parts.map(|(model, body)| integrator.refusal(model, body, steps.mass_damping)).enumerate();
         if let Some((body, reason)) = refusals.into_iter().find_map(|(body, reason)| Some((body, reason?))) {
-            let name = words::quoted(&typed(&integrator));
+            let name = words::quoted(&captions::typed(&integrator));
             // The integrator of the scene suits other runs.
-            match (run.integrator, &self.choices[at]) {
+            match (typed.integrator, &self.choices[at]) {
                 (None, Some(choice)) => {
                     let message = format!("{name}, which is `time.integrator`, {reason}");
                     report.at(&choice.models[body].path, message, "or give this run an `integrator` of its own");
@@ -160,11 +153,11 @@ impl Resolved<'_> {
             }
             return None;
         }
-        let fastest = parts.fastest(integrator);
-        let kernel = run.kernel.unwrap_or(fastest);
+        let fastest = fastest(&run, integrator);
+        let kernel = typed.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
-            let slow = parts.iter().position(|(model, _)| Kernel::of(model, integrator) != Kernel::Fast);
-            let slow = slow.filter(|_| parts.of.len() > 1).and_then(|slow| self.bodies.get(parts.of[slow]));
+            let slow = run.models.iter().position(|model| Kernel::of(&**model, integrator) != Kernel::Fast);
+            let slow = slow.filter(|_| run.of.len() > 1).and_then(|slow| self.bodies.get(run.of[slow]));
             let of = slow.map_or(String::new(), |body| format!(" of {}", body.in_words()));
             let message = format!(
                 "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.kind` or `model.rotation`{of} has no vectorised steps"
@@ -172,29 +165,7 @@ impl Resolved<'_> {
             report.at(&key_path!["run", at, "kernel"], message, "remove it, or write \"reference\"");
             return None;
         }
-        let Parts { of, bodies, initial, models, grips, grip_names, loads, recording } = parts;
-        let (name, colour) = (run.name.clone(), run.colour.map(|colour| colour.0));
-        let place = 0;
-        Some(Run {
-            name,
-            of,
-            bodies,
-            initial,
-            rest: None,
-            comes_to_rest: None,
-            placed: None,
-            models,
-            recording,
-            grips,
-            grip_names,
-            loads,
-            integrator,
-            step,
-            tolerance,
-            kernel,
-            place,
-            colour,
-        })
+        Some(Run { integrator, step, tolerance, kernel, ..run })
     }
 }
 
@@ -229,10 +200,11 @@ pub(super) fn resolve(
 ) -> Option<(Vec<Run>, Vec<SceneBody>)> {
     let runs = &scene.file.run;
     // T depends on all models: without one of them, steps would be reported wrongly.
-    let (parts, own) = resolved.parts(runs, recordings, report)?;
-    let steps = Steps::new(scene.file, &parts, report)?;
-    let run =
-        |(at, (run, parts)): (usize, (&Option<RunFile>, Parts))| resolved.run(at, run.as_ref()?, parts, &steps, report);
-    let runs = runs.iter().zip(parts).enumerate().map(run).collect::<Option<_>>()?;
+    let (found, own) = resolved.without_steps(runs, recordings, report)?;
+    let steps = Steps::new(scene.file, &found, report)?;
+    let run = |(at, (typed, run)): (usize, (&Option<RunFile>, Run))| {
+        resolved.with_step(at, (typed.as_ref()?, run), &steps, report)
+    };
+    let runs = runs.iter().zip(found).enumerate().map(run).collect::<Option<_>>()?;
     Some((runs, own))
 }

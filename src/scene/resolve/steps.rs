@@ -1,12 +1,11 @@
 //! The time steps of runs.
 
-use super::runs::Parts;
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words;
-use crate::scene::Recorded;
 use crate::scene::file::{RunFile, SceneFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
+use crate::scene::{Recorded, Run};
 use crate::sim::Integrator;
 use crate::sim::stability::{Restraint, Stability};
 
@@ -29,14 +28,12 @@ pub(super) struct Steps<'a> {
 }
 
 impl<'a> Steps<'a> {
-    /// The steps of runs with these parts.
-    pub(super) fn new(file: &'a SceneFile, parts: &[Parts], report: &mut Collector<'_>) -> Option<Self> {
+    /// The steps of these runs.
+    pub(super) fn new(file: &'a SceneFile, found: &[Run], report: &mut Collector<'_>) -> Option<Self> {
         let (runs, time, mass_damping) = (&file.run, file.time.as_ref()?, file.mass_damping());
-        let periods =
-            parts.iter().flat_map(Parts::iter).map(|(model, body)| model.properties(body).shortest_period(body));
-        let cycle = periods.fold(f64::INFINITY, f64::min);
-        let own = own_limits(runs, time, mass_damping, parts);
-        warn_of_held_steps(runs, time, parts, &own, report);
+        let cycle = found.iter().map(Run::shortest_period).fold(f64::INFINITY, f64::min);
+        let own = own_limits(runs, time, mass_damping, found);
+        warn_of_held_steps(runs, time, found, &own, report);
         Some(Self { time, runs, mass_damping, cycle, limits: limits(own, &sharing(runs, time)) })
     }
 
@@ -130,6 +127,11 @@ fn misplaced(
     is_typed.then(|| (path, message, format!("{remedy}, or write `integrator = \"dormand-prince\"`")))
 }
 
+/// Whether a model of a run moves its nodes itself.
+fn is_projected(run: &Run) -> bool {
+    run.models_and_bodies().any(|(model, body)| model.projection(body).is_some())
+}
+
 /// Whether a step is chosen by this program.
 fn is_auto(step: &Option<StepFile>) -> bool {
     matches!(step, Some(StepFile::Named(NamedStep::Auto)))
@@ -143,20 +145,20 @@ fn sharing(runs: &[Option<RunFile>], time: &TimeFile) -> Vec<usize> {
 
 /// The largest step (s) for each run with `step = "auto"`, infinite for others: the largest stable one, or for a model that moves its
 /// nodes itself the one that is taken.
-fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, mass_damping: f64, parts: &[Parts]) -> Vec<f64> {
+fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, mass_damping: f64, found: &[Run]) -> Vec<f64> {
     let sharing = sharing(runs, time);
-    let limit = |(at, (run, parts)): (usize, (&Option<RunFile>, &Parts))| {
+    let limit = |(at, (run, found)): (usize, (&Option<RunFile>, &Run))| {
         let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || sharing.contains(&at)) else {
             return f64::INFINITY;
         };
         let integrator = run.integrator.unwrap_or(time.integrator);
-        let Parts { bodies, models, grips, .. } = parts;
+        let Run { bodies, models, grips, .. } = found;
         let each =
             Stability::of_each(bodies, models, integrator, Restraint { grips, duration: time.duration, mass_damping });
         let largest = Stability::of_all(&each).largest;
-        if parts.is_projected() { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
+        if is_projected(found) { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
     };
-    runs.iter().zip(parts).enumerate().map(limit).collect()
+    runs.iter().zip(found).enumerate().map(limit).collect()
 }
 
 /// The largest step (s) for each run, and the run that limits it: the run itself, or among the runs that share the scene's step the one
@@ -172,12 +174,12 @@ fn limits(own: Vec<f64>, sharing: &[usize]) -> Vec<(f64, usize)> {
 fn warn_of_held_steps(
     runs: &[Option<RunFile>],
     time: &TimeFile,
-    parts: &[Parts],
+    found: &[Run],
     own: &[f64],
     report: &mut Collector<'_>,
 ) {
     let (holding, others): (Vec<usize>, Vec<usize>) =
-        sharing(runs, time).into_iter().partition(|&at| parts[at].is_projected());
+        sharing(runs, time).into_iter().partition(|&at| is_projected(&found[at]));
     let step = |of: &[usize]| automatic(of.iter().map(|&at| own[at]).fold(f64::INFINITY, f64::min), time);
     if let (Some(held), Some(free)) = (step(&holding), step(&others))
         && held < free
