@@ -6,6 +6,7 @@ use super::surface::Variant;
 use super::{PANEL_SHADER, ground, pane};
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
+use wgpu::naga;
 
 fn parse(parts: &[&str]) -> naga::Module {
     let text = super::pipeline::joined(parts);
