@@ -4,7 +4,7 @@ use crate::interrupt::{Slices, hear};
 use crate::result::{divergence, tables, vectors_as_array};
 use crate::{convert, error};
 use localshape::glam::DVec3;
-use localshape::sim::{self, Ease, Key, Motion, Offset, Path, Pose, State, Status};
+use localshape::sim::{self, Course, Ease, Key, Load, Loading, Motion, Offset, Path, Pose, State, Status};
 use numpy::{PyArray2, PyUntypedArray};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -180,11 +180,14 @@ impl World {
         Ok(vectors_as_array(py, &self.now()?.forces()))
     }
 
-    /// Sets the constant force on each node (N) from now on: N × 3; `None` for no forces.
+    /// Sets the constant force on each node (N) from now on, beside the loads of the scene: N × 3; `None` for no forces.
     #[pyo3(signature = (forces))]
     fn set_forces(&self, forces: Option<&Bound<'_, PyUntypedArray>>) -> PyResult<()> {
-        let forces = forces.map(|forces| self.rows(forces, "forces")).transpose()?.unwrap_or_default();
-        self.now()?.set_forces(forces).map_err(|error| PyValueError::new_err(error.to_string()))
+        let forces = forces.map(|forces| self.rows(forces, "forces")).transpose()?;
+        let of_scene = self.scene.runs[self.run].loads.iter().map(|load| Arc::clone(load) as Arc<dyn Load>);
+        let dead = |forces: Vec<DVec3>| Loading::dead((0..forces.len() as u32).collect(), forces, Course::ALWAYS);
+        let loads = of_scene.chain(forces.map(|forces| Arc::new(dead(forces)) as Arc<dyn Load>)).collect();
+        self.now()?.set_loads(loads).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     /// Sets the acceleration of gravity (m/s²) from now on: three numbers.

@@ -2,7 +2,7 @@
 use glam::DVec3;
 use localshape_sim::model::shape_based::ShapeBased;
 use localshape_sim::{
-    Body, FrictionOf, Integrator, Motion, Obstacle, Pose, Shape, State, Stepping, Surroundings, World,
+    Body, Course, FrictionOf, Integrator, Loading, Motion, Obstacle, Pose, Shape, State, Stepping, Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -23,7 +23,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     world.set_obstacles(vec![Obstacle { shape, motion, pivot, restitution: 0.2, friction: 0.3, friction_of }])?;
     for frame in 0..120 {
         if frame == 30 {
-            world.push(&[0, 2, 4, 6], DVec3::X * 20.0)?; // A hand at the left side, which stays there.
+            // A hand at the left side, which stays there.
+            let hand = Loading::dead(vec![0, 2, 4, 6], vec![DVec3::X * 20.0; 4], Course::ALWAYS);
+            world.set_loads(vec![Arc::new(hand)])?;
         }
         world.advance(16);
         println!("{}", world.state().position[7]); // Draw here.

@@ -5,8 +5,8 @@ use glam::{DMat3, DVec3};
 use std::fmt;
 use std::ops::Range;
 
-/// Forces on nodes that change with time or with positions, such as wind, a push or a spring to a point outside. Closures with the arguments
-/// of [`Self::add`] are loads, too.
+/// Forces on nodes, such as a push, wind or a spring to a point outside. They may change with time and with positions. Closures with the
+/// arguments of [`Self::add`] are loads, too.
 pub trait Load: Send + Sync {
     /// Adds the forces (N) on all nodes, which are at `position` (m) at a time (s), to `forces`, one for each node. The same arguments add
     /// the same forces: a step may be evaluated more than once.

@@ -21,9 +21,7 @@ pub struct Surroundings {
     pub contacts: Option<Contacts>,
     /// Kinematic constraints, applied after all obstacles.
     pub grips: Vec<Grip>,
-    /// A constant force on each node (N); empty for none.
-    pub forces: Vec<DVec3>,
-    /// Forces that change with time or with the positions of nodes, beside the constant ones.
+    /// Forces on nodes: constant ones, and others that change with time or with the positions of nodes.
     pub loads: Vec<Arc<dyn Load>>,
 }
 
@@ -56,9 +54,6 @@ impl Surroundings {
             let message = format!("mass_damping is {}; expected a finite number, 0 or more (1/s)", self.mass_damping);
             return Err(WrongSurroundings { of: "mass_damping", at: 0, message });
         }
-        if !self.forces.is_empty() {
-            check_vectors("force", "forces", &self.forces, nodes)?;
-        }
         let value = |of, at| {
             move |(value, found, expected): Fault| {
                 let message = format!("the {value} of {of} {at} is {found}; expected {expected}");
@@ -73,16 +68,14 @@ impl Surroundings {
         {
             return Err(value("contact", at)(found));
         }
+        for (at, load) in self.loads.iter().enumerate() {
+            check_nodes(&format!("load {at}"), load.nodes().unwrap_or_default(), nodes)?;
+        }
         for (at, grip) in self.grips.iter().enumerate() {
             check_nodes(&format!("grip {at}"), &grip.nodes, nodes)?;
             fault_of_grip(grip).map_or(Ok(()), Err).map_err(value("grip", at))?;
         }
         Ok(())
-    }
-
-    /// Whether there are forces from outside on nodes.
-    pub(super) fn has_loads(&self) -> bool {
-        !(self.forces.is_empty() && self.loads.is_empty())
     }
 
     /// Whether forces from outside are the same at all times and positions in a step.
@@ -92,8 +85,7 @@ impl Surroundings {
 
     /// The greatest forces from outside on nodes at `position` (m), as far as they are known.
     pub(super) fn greatest(&self, position: &[DVec3]) -> Option<Vec<DVec3>> {
-        let mut forces = self.forces.clone();
-        forces.resize(position.len(), DVec3::ZERO);
+        let mut forces = vec![DVec3::ZERO; position.len()];
         self.loads.iter().all(|load| load.add_greatest(position, &mut forces)).then_some(forces)
     }
 
@@ -102,9 +94,7 @@ impl Surroundings {
         if self.loads.iter().any(|load| load.nodes().is_none()) {
             return (0..nodes as u32).collect();
         }
-        let of_forces = (0..).zip(&self.forces).filter(|(_, force)| **force != DVec3::ZERO).map(|(node, _)| node);
         let mut all: Vec<u32> = self.loads.iter().flat_map(|load| load.nodes().unwrap_or_default()).copied().collect();
-        all.extend(of_forces);
         all.sort_unstable();
         all.dedup();
         all
@@ -112,7 +102,6 @@ impl Surroundings {
 
     /// Adds the forces from outside on nodes at `position` (m) at a time (s).
     pub(super) fn push(&self, time: f64, position: &[DVec3], forces: &mut [DVec3]) {
-        forces.iter_mut().zip(&self.forces).for_each(|(sum, force)| *sum += *force);
         self.loads.iter().for_each(|load| load.add(time, position, forces));
     }
 }

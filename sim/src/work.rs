@@ -43,7 +43,7 @@ impl Work {
         time: f64,
         position: &[DVec3],
     ) -> Option<Self> {
-        if !around.has_loads() {
+        if around.loads.is_empty() {
             return None;
         }
         let nodes = around.loaded(position.len());

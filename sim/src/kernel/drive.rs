@@ -65,15 +65,10 @@ impl Dynamics for ByKernel {
             rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
-        let Surroundings { gravity, mass_damping, grips, forces, loads, .. } = &system.surroundings;
+        let Surroundings { gravity, mass_damping, grips, loads, .. } = &system.surroundings;
         let work = system.work.as_ref();
         let loaded = || work.map_or(&[][..], |work| work.nodes()).iter().map(|&node| node as usize);
         let mut steady = Forces::default();
-        if !forces.is_empty() {
-            steady = Forces::zero(forces.len());
-            steady.vectors.copy_from_slice(forces);
-            steady.spread(0..forces.len());
-        }
         let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
         let (obstacles, apart, impulses) = (&obstacles[..], &system.apart()[..], system.impulses.as_ref());
         let spans: Vec<_> = grips.iter().map(Grip::span).collect();

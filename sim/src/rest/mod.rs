@@ -234,7 +234,6 @@ fn at_start(around: &Surroundings) -> Surroundings {
         obstacles: around.obstacles.iter().map(obstacle).collect(),
         contacts,
         grips: around.grips.iter().filter(|grip| grip.holds(0.0)).map(grip).collect(),
-        forces: around.forces.clone(),
         loads: around.loads.iter().map(|load| Arc::new(AtStart(Arc::clone(load))) as Arc<dyn Load>).collect(),
     }
 }

@@ -5,7 +5,7 @@ use crate::contact::Obstacle;
 use crate::grip::Grip;
 use crate::load::Load;
 use crate::state::{State, Status};
-use crate::surroundings::{Surroundings, WrongSurroundings, check_nodes, check_vectors};
+use crate::surroundings::{Surroundings, WrongSurroundings, check_vectors};
 use crate::system::System;
 use glam::DVec3;
 use std::sync::Arc;
@@ -32,33 +32,23 @@ impl World {
         self.change(|around| around.mass_damping = damping)
     }
 
-    /// Sets the constant force on each node (N) from now on; none for an empty list. They cost a fast step little.
+    /// Sets the forces on nodes from now on, such as [`Loading::dead`](crate::Loading::dead). [Steady](Load::is_steady) ones cost a fast step
+    /// little. Before it evaluates others it reads the positions of [their nodes](Load::nodes).
     ///
     /// # Errors
-    /// Not one force for each node, or one that is not finite.
-    pub fn set_forces(&mut self, forces: Vec<DVec3>) -> Result<(), WrongSurroundings> {
-        self.change(|around| around.forces = forces)
-    }
-
-    /// Adds a constant force (N) to each of some nodes, from now on.
-    ///
-    /// # Errors
-    /// A node that is not there, or a force that is not finite.
-    pub fn push(&mut self, nodes: &[u32], force: DVec3) -> Result<(), WrongSurroundings> {
-        let count = self.state.position.len();
-        check_nodes("a force", nodes, count)?;
-        self.change(|around| {
-            around.forces.resize(count, DVec3::ZERO);
-            nodes.iter().for_each(|&node| around.forces[node as usize] += force);
-        })
-    }
-
-    /// Sets the forces that change with time or positions, from now on. A fast step then reads all positions before each evaluation of
-    /// forces.
-    pub fn set_loads(&mut self, loads: Vec<Arc<dyn Load>>) {
+    /// A node that is not there, or a force that is not finite now.
+    pub fn set_loads(&mut self, loads: Vec<Arc<dyn Load>>) -> Result<(), WrongSurroundings> {
+        self.settle();
+        let (position, now) = (&self.state.position, self.system.interval(self.state.steps).begin);
+        let around = Surroundings { loads, ..self.system.surroundings.clone() };
+        around.check(position.len())?;
+        let mut forces = vec![DVec3::ZERO; position.len()];
+        around.push(now, position, &mut forces);
+        check_vectors("force", "forces", &forces, position.len())?;
         let work = self.pause();
-        self.system.surroundings.loads = loads;
+        self.system.surroundings = around;
         self.go_on(work);
+        Ok(())
     }
 
     /// Sets the obstacles from now on. Their motions are functions of the time of the world, which goes on.

@@ -90,7 +90,7 @@ impl Moment {
 /// Bodies with their elastic models, as they move in time. Stepping cannot fail: a world that diverges stops at its
 /// last finite state, and [`Self::status`] reports it.
 ///
-/// What acts on the bodies can change between steps: see [`Self::set_forces`], [`Self::set_obstacles`] and the functions beside them. A copy
+/// What acts on the bodies can change between steps: see [`Self::set_loads`], [`Self::set_obstacles`] and the functions beside them. A copy
 /// of a world goes on by itself, with one thread.
 pub struct World {
     system: System,
@@ -431,7 +431,7 @@ impl World {
 
     /// The diagnostics in `wanted` of all bodies together, and those of each. The others are zero and cost no time.
     pub fn diagnostics_by_body(&self, wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
-        let outside = self.outside(wanted.contains(&Diagnostic::Crossings));
+        let outside = self.outside(wanted);
         let bodies = self.system.parts.iter().zip(outside).map(|(part, outside)| {
             let report = || self.dynamics.report(part, &self.state, None, &self.system.crew);
             self.facts(part, outside, report)
@@ -470,7 +470,7 @@ impl World {
         let Self { system, dynamics, state, field, wanted, .. } = self;
         let crew = &*system.crew;
         let (mut bodies, mut energies) = (Vec::new(), Vec::new());
-        let outside = self.outside(wanted.contains(&Diagnostic::Crossings));
+        let outside = self.outside(wanted);
         for (part, outside) in system.parts.iter().zip(outside) {
             let mut of_nodes = Vec::new();
             let known = (*field == Some(Field::ElasticEnergy)).then(|| {

@@ -2,7 +2,7 @@
 
 use super::World;
 use crate::contact::{ContactPoint, Impulses, Reaction, Side, Source};
-use crate::diagnostics::Outside;
+use crate::diagnostics::{Diagnostic, Outside};
 use crate::dynamics::{Dynamics, SpeedLimit};
 use crate::state::{Runaway, State};
 use crate::surroundings::Surroundings;
@@ -80,17 +80,18 @@ impl World {
     }
 
     /// What diagnostics tell of each body from outside: the mean force of contact and its torque, the work of loads, and the crossings of its
-    /// own and those that it shares with other bodies, which are counted only if that is wanted.
-    pub(super) fn outside(&self, is_counted: bool) -> Vec<Outside> {
+    /// own and those that it shares with other bodies. Work and crossings take time, and are told only if they are wanted.
+    pub(super) fn outside(&self, wanted: &[Diagnostic]) -> Vec<Outside> {
         let mut all = vec![Outside::default(); self.system.parts.len()];
-        all.iter_mut().zip(self.work().into_iter().flatten()).for_each(|(outside, work)| outside.work = Some(work));
+        let work = wanted.contains(&Diagnostic::Work).then(|| self.work()).flatten();
+        all.iter_mut().zip(work.into_iter().flatten()).for_each(|(outside, work)| outside.work = Some(work));
         for Reaction { from, on, force, torque } in self.reactions().iter().flatten() {
             let Outside { contact, grips, .. } = &mut all[*on];
             let sums = if matches!(from, Source::Grip(_)) { grips } else { contact };
             let [sum, turning] = sums.unwrap_or_default();
             *sums = Some([sum + *force, turning + *torque]);
         }
-        let counted = is_counted.then(|| self.crossings()).flatten();
+        let counted = wanted.contains(&Diagnostic::Crossings).then(|| self.crossings()).flatten();
         if counted.is_some() {
             all.iter_mut().for_each(|outside| outside.crossings = Some([0; 2]));
         }

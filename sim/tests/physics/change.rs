@@ -5,7 +5,10 @@ use super::support::{floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::xpbd::Xpbd;
-use localshape_sim::{Body, Crew, Grip, Kernel, Motion, Pose, Springs, State, Status, Stepping, Surroundings, World};
+use localshape_sim::{
+    Body, Course, Crew, Grip, Kernel, Load, Loading, Motion, Pose, Springs, State, Status, Stepping, Surroundings,
+    World,
+};
 use std::sync::Arc;
 
 const STEP: f64 = 1e-4;
@@ -41,6 +44,11 @@ fn worlds() -> Vec<(String, World)> {
     all
 }
 
+/// The same force (N) on some nodes, for ever.
+fn push(nodes: &[u32], force: DVec3) -> Vec<Arc<dyn Load>> {
+    vec![Arc::new(Loading::dead(nodes.to_vec(), vec![force; nodes.len()], Course::ALWAYS))]
+}
+
 fn middle(of: &[DVec3]) -> DVec3 {
     of.iter().sum::<DVec3>() / of.len() as f64
 }
@@ -52,17 +60,16 @@ fn forces_move_a_body_as_gravity_does() {
     for (text, mut falling) in worlds() {
         let count = falling.state().position.len();
         let of_load = move |_: f64, _: &[DVec3], forces: &mut [DVec3]| forces.iter_mut().for_each(|sum| *sum += pull);
-        let [mut given, mut pushed, mut loaded] = [(); 3].map(|()| falling.clone());
+        let [mut pushed, mut loaded] = [(); 2].map(|()| falling.clone());
         falling.set_gravity(pull).expect("gravity");
-        given.set_forces(vec![pull; count]).expect("forces");
-        pushed.push(&(0..count as u32).collect::<Vec<_>>(), pull).expect("forces");
-        loaded.set_loads(vec![Arc::new(of_load)]);
-        for world in [&mut falling, &mut given, &mut pushed, &mut loaded] {
+        pushed.set_loads(push(&(0..count as u32).collect::<Vec<_>>(), pull)).expect("a load");
+        loaded.set_loads(vec![Arc::new(of_load)]).expect("a load");
+        for world in [&mut falling, &mut pushed, &mut loaded] {
             world.set_crew(Crew::new(2));
             world.advance(30);
             world.advance(20);
         }
-        for world in [&given, &pushed, &loaded] {
+        for world in [&pushed, &loaded] {
             for (one, other) in world.state().position.iter().zip(&falling.state().position) {
                 assert!(one.distance(*other) < 1e-11, "{text}: {one} {other}");
             }
@@ -78,7 +85,7 @@ fn loads_follow_time_and_positions() {
         let (count, duration) = (world.state().position.len() as f64, 50.0 * STEP);
         let growing = |time: f64, _: &[DVec3], forces: &mut [DVec3]| forces[0] += DVec3::X * (1e3 * time);
         let mut held = world.clone();
-        world.set_loads(vec![Arc::new(growing)]);
+        world.set_loads(vec![Arc::new(growing)]).expect("a load");
         world.advance(50);
         let momentum = world.diagnostics().momentum.x;
         let expected = 0.5e3 * duration * duration;
@@ -88,7 +95,7 @@ fn loads_follow_time_and_positions() {
             position.iter().zip(forces).for_each(|(at, sum)| *sum -= *at * 1e3);
         };
         let before = middle(held.state().position.as_slice());
-        held.set_loads(vec![Arc::new(spring)]);
+        held.set_loads(vec![Arc::new(spring)]).expect("a load");
         held.advance(50);
         let moved = middle(&held.state().position) - before;
         let expected = before * ((1e3_f64.sqrt() * duration).cos() - 1.0);
@@ -99,14 +106,14 @@ fn loads_follow_time_and_positions() {
 #[test]
 fn copies_go_on_with_the_same_bits() {
     for (text, mut world) in worlds() {
-        world.push(&[0, 5], DVec3::new(1.0, 2.0, -1.0)).expect("nodes");
+        world.set_loads(push(&[0, 5], DVec3::new(1.0, 2.0, -1.0))).expect("nodes");
         world.advance(7);
         let mut copy = world.clone();
         copy.advance(9);
         world.advance(4);
         world.advance(5);
         assert_eq!(copy.state(), world.state(), "{text}");
-        copy.set_forces(Vec::new()).expect("no forces");
+        copy.set_loads(Vec::new()).expect("no loads");
         copy.advance(3);
         world.advance(3);
         assert_ne!(copy.state().velocity, world.state().velocity, "{text}");
@@ -148,13 +155,10 @@ fn wrong_surroundings_are_told_and_change_nothing() {
     let count = world.state().position.len();
     let told = |found: Result<(), localshape_sim::WrongSurroundings>| found.unwrap_err().to_string();
     assert_eq!(told(world.set_gravity(DVec3::NAN)), "gravity is [NaN, NaN, NaN]; expected finite numbers (m/s²)");
-    assert_eq!(
-        told(world.set_forces(vec![DVec3::X])),
-        format!("there are 1 forces for {count} nodes; give one for each")
-    );
-    assert_eq!(told(world.push(&[0, 99], DVec3::X)), format!("a force names node 99; the last one is {}", count - 1));
-    let infinite = DVec3::X * f64::INFINITY;
-    assert_eq!(told(world.push(&[2], infinite)), "the force of node 2 is [inf, NaN, NaN]; expected finite numbers");
+    let missing = told(world.set_loads(push(&[0, 99], DVec3::X)));
+    assert_eq!(missing, format!("load 0 names node 99; the last one is {}", count - 1));
+    let infinite = told(world.set_loads(push(&[2], DVec3::X * f64::INFINITY)));
+    assert_eq!(infinite, "the force of node 2 is [inf, NaN, NaN]; expected finite numbers");
     let wrong = world.set_nodes(vec![DVec3::ZERO; count], vec![DVec3::ZERO; 2]);
     assert_eq!(told(wrong), format!("there are 2 velocities for {count} nodes; give one for each"));
     let grip = Grip { nodes: vec![0, 70], from: 0.0, until: 1.0, motion: Motion::Still };
@@ -165,5 +169,5 @@ fn wrong_surroundings_are_told_and_change_nothing() {
     let found = told(world.set_obstacles(vec![floor(0.0, 0.5), bouncing]));
     assert_eq!(found, "the restitution of obstacle 1 is 1.5; expected a number from 0 to 1");
     let around = world.surroundings();
-    assert!(around.forces.is_empty() && around.grips.is_empty() && around.obstacles.is_empty());
+    assert!(around.loads.is_empty() && around.grips.is_empty() && around.obstacles.is_empty());
 }
