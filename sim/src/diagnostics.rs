@@ -348,7 +348,7 @@ diagnostics! { facts:
 
     /// The largest angular acceleration that errors of the rotations cause (rad/s²), α of Eq. (18).
     Residual, residual: f64, "residual α", "rad/s²", Frames =
-        facts.reduced(|body| body.report.residual(Report::ROTATION).unwrap_or(f64::NAN), f64::max);
+        facts.reduced(|body| body.report.residual.unwrap_or(f64::NAN), f64::max);
 
     /// Number of elements that have turned over.
     TurnedOver, turned_over: usize, "turned over", "", Summaries =

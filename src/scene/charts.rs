@@ -6,7 +6,7 @@ use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{list, nearest, quoted};
-use crate::sim::model::{ElasticModel, Report};
+use crate::sim::model::ElasticModel;
 use crate::sim::{Diagnostic, Dimension, Obstacle, Shape, geometry};
 
 impl Scene {
@@ -103,7 +103,7 @@ impl Scene {
         let has_residual = |model: &dyn ElasticModel, SceneBody { body, initial, .. }: &SceneBody| {
             let (forces, memory) = (model.prepare(body), model.start(body, &initial.position));
             let report = forces.report(initial.nodes(), &memory, &mut |_, _, _| ());
-            report.residual(Report::ROTATION).is_some()
+            report.residual.is_some()
         };
         let (exists, why) = match diagnostic {
             Diagnostic::Elastic | Diagnostic::Energy => {

@@ -385,8 +385,7 @@ impl ForceModel for Idle {
     }
 
     fn report(&self, _: Nodes<'_>, _: &[f64], _: &mut Share<'_>) -> Report {
-        let residuals = if self.turns { vec![(Report::ROTATION, 0.0)] } else { Vec::new() };
-        Report { energy: None, residuals }
+        Report { energy: None, residual: self.turns.then_some(0.0) }
     }
 }
 

@@ -3,7 +3,6 @@
 use super::support::{after, shipped};
 use glam::DVec3;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::model::Report;
 use localshape::sim::{Integrator, State, Status};
 use std::path::Path;
 
@@ -170,7 +169,7 @@ fn alpha_follows_from_what_a_step_leaves_behind() {
         let mut world = scene.world(0);
         let mut largest = 0.0f64;
         for _ in 0..100 {
-            let asked = world.report(0).residual(Report::ROTATION).expect("rotations");
+            let asked = world.report(0).residual.expect("rotations");
             let before = world.state().position.clone();
             world.advance(1);
             let left = world.residuals(0, &before);

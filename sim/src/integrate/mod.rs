@@ -223,12 +223,6 @@ impl Step<'_> {
         self.system.is_damped()
     }
 
-    /// Whether a kinematic constraint begins or ends to hold nodes in this step, so that the motion before does not continue.
-    pub fn changes_holds(&self) -> bool {
-        let Interval { begin, end, .. } = self.interval;
-        self.system.surroundings.grips.iter().any(|grip| grip.moves(begin) != grip.moves(end))
-    }
-
     /// Evaluates the forces of models, gravity and forces from outside on nodes after a `share` of the step, with the memory that models had
     /// after the last evaluation.
     pub fn evaluate(&self, share: f64, at: Nodes<'_>, memory: &[f64], out: &mut Evaluation) {

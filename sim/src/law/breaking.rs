@@ -52,7 +52,7 @@ impl<W: Strained> Law for Breaking<W> {
     const OF_ELEMENT: usize = W::OF_ELEMENT;
     const OF_CORNER: usize = W::OF_CORNER;
     const MEMORY: usize = W::MEMORY + 1;
-    const RESIDUAL: Option<&'static str> = W::RESIDUAL;
+    const HAS_RESIDUAL: bool = W::HAS_RESIDUAL;
     type Whole<L: Lanes> = Bearing<W::Whole<L>, L>;
 
     fn elements(&self, body: &Body) -> Option<IndexLists> {
@@ -65,10 +65,6 @@ impl<W: Strained> Law for Breaking<W> {
 
     fn is_damped(&self) -> bool {
         self.law.is_damped()
-    }
-
-    fn depends_on_history(&self) -> bool {
-        self.law.depends_on_history()
     }
 
     #[inline(always)]

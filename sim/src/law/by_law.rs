@@ -85,7 +85,7 @@ impl<W: Law> Energy for ByLaw<W> {
         }
         let energy = found.iter().map(|chunk| chunk.energy).sum();
         let residual = found.iter().fold(0.0, |most: f64, chunk| most.max(chunk.residual));
-        Report { energy: Some(energy), residuals: W::RESIDUAL.map(|name| (name, residual)).into_iter().collect() }
+        Report { energy: Some(energy), residual: W::HAS_RESIDUAL.then_some(residual) }
     }
 }
 
@@ -167,10 +167,6 @@ impl<W: Law> ForceModel for ByLaw<W> {
 
     fn is_damped(&self) -> bool {
         self.law.is_damped()
-    }
-
-    fn depends_on_history(&self) -> bool {
-        self.law.depends_on_history()
     }
 
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {

@@ -14,7 +14,7 @@ impl<W: Law> Law for Filled<W> {
     const OF_ELEMENT: usize = W::OF_ELEMENT + 1;
     const OF_CORNER: usize = W::OF_CORNER;
     const MEMORY: usize = W::MEMORY;
-    const RESIDUAL: Option<&'static str> = W::RESIDUAL;
+    const HAS_RESIDUAL: bool = W::HAS_RESIDUAL;
     type Whole<L: Lanes> = W::Whole<L>;
 
     fn elements(&self, body: &Body) -> Option<IndexLists> {
@@ -27,10 +27,6 @@ impl<W: Law> Law for Filled<W> {
 
     fn is_damped(&self) -> bool {
         self.0.is_damped()
-    }
-
-    fn depends_on_history(&self) -> bool {
-        self.0.depends_on_history()
     }
 
     #[inline(always)]

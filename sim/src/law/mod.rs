@@ -66,8 +66,8 @@ pub trait Law: Clone + Send + Sync + 'static {
     /// How many numbers each element remembers from one evaluation to the next. They are the memory of the model, element by
     /// element.
     const MEMORY: usize = 0;
-    /// The name of the residual of elements whose greatest value is [reported](super::model::Report::residuals).
-    const RESIDUAL: Option<&'static str> = None;
+    /// Whether elements have the residual whose greatest value is [reported](super::model::Report::residual).
+    const HAS_RESIDUAL: bool = false;
 
     /// What the forces on the corners of an element have in common.
     type Whole<L: Lanes>: Copy;
@@ -88,11 +88,6 @@ pub trait Law: Clone + Send + Sync + 'static {
 
     /// Whether forces depend on velocities.
     fn is_damped(&self) -> bool {
-        false
-    }
-
-    /// Whether forces depend on the memory, beyond round-off.
-    fn depends_on_history(&self) -> bool {
         false
     }
 

@@ -416,7 +416,7 @@ impl ForceModel for SpringForces {
             share(spring, ends, &[0.5 * energy; 2]);
             whole += energy;
         }
-        Report { energy: Some(whole), residuals: Vec::new() }
+        Report { energy: Some(whole), residual: None }
     }
 }
 

@@ -117,7 +117,7 @@ pub trait ForceModel: Send + Sync {
         false
     }
 
-    /// Energy and residuals, from the same computation as the forces with these nodes and this memory. Calls `share`
+    /// Energy and residual, from the same computation as the forces with these nodes and this memory. Calls `share`
     /// for each element or spring, in order.
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report;
 
@@ -205,23 +205,13 @@ impl Scratch {
     }
 }
 
-/// Energy and residuals of a model in a state.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Energy and residual of a model in a state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// Elastic energy (J); its negative gradient is the elastic forces. `None` for a model without energy.
     pub energy: Option<f64>,
-    /// The residuals of conditions that the model satisfies only approximately, by name.
-    pub residuals: Vec<(&'static str, f64)>,
-}
-
-impl Report {
-    /// The name of the residual that is the largest α of Eq. (18) over all elements (rad/s²).
-    pub const ROTATION: &'static str = "rotation";
-
-    /// The residual with this name; `None` for a model without it.
-    pub fn residual(&self, name: &str) -> Option<f64> {
-        self.residuals.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
-    }
+    /// The largest α of Eq. (18) over all elements (rad/s²); `None` for a model without rotations.
+    pub residual: Option<f64>,
 }
 
 /// Checks that a material gives each element of a body a stiffness.

@@ -2,9 +2,9 @@
 
 use super::support::{Noise, Remembering, lattice, mass_spring};
 use glam::DVec3;
+use localshape_sim::model::ElasticModel;
 use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{DampingReading, ShapeBased};
-use localshape_sim::model::{ElasticModel, Report};
 use localshape_sim::{
     Body, Crew, Dimension, Field, Integrator, Kernel, Snapshot, Springs, State, Stepping, Surroundings, World,
 };
@@ -131,7 +131,7 @@ fn the_residual_is_that_of_what_holds() {
     for kernel in [Kernel::Fast, Kernel::Reference] {
         let of = |model: &dyn ElasticModel| {
             let report = world(&body, &state, model, kernel).report(0);
-            report.residual(Report::ROTATION).expect("rotations")
+            report.residual.expect("rotations")
         };
         let (rest, all) = (of(&breaks), of(&ShapeBased::new(STIFFNESS)));
         assert!(rest < 1e-9 && all > 1e-6, "{kernel:?}: {rest:e} {all:e}");

@@ -2,8 +2,8 @@
 
 use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
+use localshape_sim::model::ModelParameters;
 use localshape_sim::model::shape_based::ShapeBased;
-use localshape_sim::model::{ModelParameters, Report};
 use localshape_sim::rotation::{linearised, moment, torque};
 use localshape_sim::{Body, Ease, Grip, Integrator, Key, Motion, Offset, State, Stepping, Surroundings, World};
 use std::sync::Arc;
@@ -67,7 +67,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let second = linearised::iterate(at_rest(&world), first, 1, solve).rotation;
     let inertia: f64 = body.mass().iter().zip(&rest).map(|(m, r)| m * r.dot(*r)).sum();
     let expected = stiffness * torque(glam::DMat3::from_quat(second) * at_rest(&world)).length() / inertia;
-    let found = world.report(0).residual(Report::ROTATION).expect("the shape model has one");
+    let found = world.report(0).residual.expect("the shape model has one");
     assert!(expected > 1e-3 && (found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
 

@@ -16,7 +16,6 @@ use crate::study::{Findings, Study, Watch, built_in, each};
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use localshape::Scene;
 use localshape::internals::random_unit;
-use localshape::sim::model::Report;
 use localshape::sim::{Assembly, State, Status};
 use printed::{Printed, PrintedRow, ROWS, STIFFNESSES};
 use rayon::prelude::*;
@@ -306,7 +305,7 @@ fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch
     }
     if diverged && has_landed[0] {
         // The rejected step had evaluated its forces in this state.
-        residuals[0].add(world.report(0).residual(Report::ROTATION).unwrap_or(f64::NAN));
+        residuals[0].add(world.report(0).residual.unwrap_or(f64::NAN));
     }
     watch(all - reported).then(|| residuals.into_iter().map(|one| one.statistics(diverged)).collect())
 }

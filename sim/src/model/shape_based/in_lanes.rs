@@ -14,7 +14,6 @@ use crate::kernel::shapes::{Shapes, square};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
 use crate::lanes::{Lanes, MOST, each};
 use crate::law::{Breaking, ByLaw, Corners, Element, Law, Rigid, Strained};
-use crate::model::Report;
 use glam::DMat3;
 use std::sync::Arc;
 
@@ -156,7 +155,7 @@ impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DA
     const OF_CORNER: usize = 3;
     /// The rotation, a quaternion.
     const MEMORY: usize = 4;
-    const RESIDUAL: Option<&'static str> = Some(Report::ROTATION);
+    const HAS_RESIDUAL: bool = true;
     type Whole<L: Lanes> = Fit<L>;
 
     fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
@@ -298,7 +297,7 @@ impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
     const OF_CORNER: usize = 2;
     /// The rotation, (cos θ, sin θ).
     const MEMORY: usize = 2;
-    const RESIDUAL: Option<&'static str> = Some(Report::ROTATION);
+    const HAS_RESIDUAL: bool = true;
     type Whole<L: Lanes> = FitInPlane<L>;
 
     fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {

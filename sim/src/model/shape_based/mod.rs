@@ -632,7 +632,7 @@ impl ForceModel for Elements {
         // In the order of the corners, for any number of threads.
         let energy = shares.iter().sum();
         let residual = alphas.into_iter().fold(0.0, f64::max);
-        Report { energy: Some(energy), residuals: vec![(Report::ROTATION, residual)] }
+        Report { energy: Some(energy), residual: Some(residual) }
     }
 
     fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
