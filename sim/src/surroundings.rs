@@ -161,32 +161,28 @@ fn fault_of_obstacle(obstacle: &Obstacle) -> Option<Fault> {
             turned.or_else(|| vector("centre", centre)).or_else(|| size("half side", half.min_element()))
         }
     };
-    let bounce = || {
-        let wrong = !(0.0..=1.0).contains(&restitution);
-        wrong.then(|| ("restitution", restitution.to_string(), "a number from 0 to 1"))
-    };
-    let rough = || {
-        let wrong = !(friction >= 0.0 && friction.is_finite());
-        wrong.then(|| ("friction", friction.to_string(), "a finite number of 0 or more"))
-    };
-    of_shape.or_else(|| vector("pivot", pivot)).or_else(bounce).or_else(rough).or_else(|| fault_of_motion(motion))
+    let of_touch = || fault_of_restitution(restitution).or_else(|| fault_of_friction(friction));
+    of_shape.or_else(|| vector("pivot", pivot)).or_else(of_touch).or_else(|| fault_of_motion(motion))
+}
+
+fn fault_of_restitution(value: f64) -> Option<Fault> {
+    let is_wrong = !(0.0..=1.0).contains(&value);
+    is_wrong.then(|| ("restitution", value.to_string(), "a number from 0 to 1"))
+}
+
+fn fault_of_friction(value: f64) -> Option<Fault> {
+    let is_wrong = !(value >= 0.0 && value.is_finite());
+    is_wrong.then(|| ("friction", value.to_string(), "a finite number of 0 or more"))
 }
 
 /// The first mistake, and the number of the body or of the pair with it.
 fn fault_of_contacts(contacts: &Contacts, obstacles: usize) -> Option<(usize, Fault)> {
-    let bounce = |value: f64| {
-        let wrong = !(0.0..=1.0).contains(&value);
-        wrong.then(|| ("restitution", value.to_string(), "a number from 0 to 1"))
-    };
-    let rough = |value: f64| {
-        let wrong = !(value >= 0.0 && value.is_finite());
-        wrong.then(|| ("friction", value.to_string(), "a finite number of 0 or more"))
-    };
     let thick = |value: f64| {
         let wrong = !(value > 0.0 && value.is_finite());
         wrong.then(|| ("thickness", value.to_string(), "a finite number above 0 (m)"))
     };
-    let usual = bounce(contacts.restitution).or_else(|| rough(contacts.friction)).map(|fault| (0, fault));
+    let usual = fault_of_restitution(contacts.restitution).or_else(|| fault_of_friction(contacts.friction));
+    let usual = usual.map(|fault| (0, fault));
     let of_bodies = || (0..).zip(&contacts.bodies).find_map(|(at, body)| Some((at, thick(body.thickness?)?)));
     let of_pairs = || {
         (0..).zip(&contacts.pairs).find_map(|(at, pair)| {
@@ -195,7 +191,8 @@ fn fault_of_contacts(contacts: &Contacts, obstacles: usize) -> Option<(usize, Fa
                 let side = pair.of.iter().find(|side| !is_there(side))?;
                 Some(("side", format!("{side:?}"), "a body or an obstacle that is there"))
             };
-            let fault = pair.restitution.and_then(bounce).or_else(|| pair.friction.and_then(rough));
+            let fault = pair.restitution.and_then(fault_of_restitution);
+            let fault = fault.or_else(|| pair.friction.and_then(fault_of_friction));
             Some((at, fault.or_else(|| pair.thickness.and_then(thick)).or_else(missing)?))
         })
     };

@@ -5,10 +5,10 @@ use super::crew::Crew;
 use super::element;
 use super::element::ElementKind;
 use super::gather::Group;
-use super::lanes::{Lanes, Set, Work, each};
+use super::lanes::{Lanes, Set, Single, Work, each};
 use super::rotation::moment;
 use glam::{DMat3, DVec3};
-use std::ops::{Add, Mul, Range, Sub};
+use std::ops::Range;
 
 /// Elements in one task of a thread.
 const CHUNK: usize = 1024;
@@ -148,54 +148,24 @@ pub fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> 
         return 0.5 * element::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
     // Relative to the first corner, for the same reason. An element with a table of faces has at most eight corners.
-    let mut corners = [[0.0; 3]; 8];
+    let mut corners = [[Single::splat(0.0); 3]; 8];
     for (corner, &node) in corners.iter_mut().zip(nodes) {
-        *corner = (position[node as usize] - position[nodes[0] as usize]).to_array();
+        *corner = (position[node as usize] - position[nodes[0] as usize]).to_array().map(Single::splat);
     }
-    inside(kind, &corners)
-}
-
-/// A scalar, or a vector of lanes.
-trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    fn new(value: f64) -> Self;
-    fn over(self, divisor: f64) -> Self;
-}
-
-impl Number for f64 {
-    #[inline(always)]
-    fn new(value: f64) -> Self {
-        value
-    }
-
-    #[inline(always)]
-    fn over(self, divisor: f64) -> Self {
-        self / divisor
-    }
-}
-
-impl<L: Lanes> Number for L {
-    #[inline(always)]
-    fn new(value: f64) -> Self {
-        L::splat(value)
-    }
-
-    #[inline(always)]
-    fn over(self, divisor: f64) -> Self {
-        self.div(L::splat(divisor))
-    }
+    inside(kind, &corners).to_array()[0]
 }
 
 /// Signed volume (m³) inside the faces of an element with these corners.
 #[inline(always)]
-fn inside<T: Number>(kind: ElementKind, corners: &[[T; 3]; 8]) -> T {
-    let mut volume = T::new(0.0);
+fn inside<L: Lanes>(kind: ElementKind, corners: &[[L; 3]; 8]) -> L {
+    let mut volume = L::splat(0.0);
     for face in element::face_table(kind) {
         let part = match **face {
-            [a, b, c] => triple(at(corners, a), at(corners, b), at(corners, c)).over(6.0),
+            [a, b, c] => triple(at(corners, a), at(corners, b), at(corners, c)) / L::splat(6.0),
             // Each of the four triangles of two adjacent corners and a third one occurs in two fans.
             [a, b, c, d] => {
                 let (a, b, c, d) = (at(corners, a), at(corners, b), at(corners, c), at(corners, d));
-                (triple(a, minus(b, d), c) + triple(b, minus(c, a), d)).over(12.0)
+                (triple(a, minus(b, d), c) + triple(b, minus(c, a), d)) / L::splat(12.0)
             }
             _ => unreachable!("elements of a kind have triangles and quadrilaterals"),
         };
@@ -205,18 +175,18 @@ fn inside<T: Number>(kind: ElementKind, corners: &[[T; 3]; 8]) -> T {
 }
 
 #[inline(always)]
-fn at<T: Number>(corners: &[[T; 3]; 8], corner: u8) -> [T; 3] {
+fn at<L: Lanes>(corners: &[[L; 3]; 8], corner: u8) -> [L; 3] {
     corners[usize::from(corner & 7)]
 }
 
 #[inline(always)]
-fn minus<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+fn minus<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// The triple product `a · (b × c)`, six times the signed volume (m³) between the origin and a triangle.
 #[inline(always)]
-fn triple<T: Number>(a: [T; 3], b: [T; 3], c: [T; 3]) -> T {
+fn triple<L: Lanes>(a: [L; 3], b: [L; 3], c: [L; 3]) -> L {
     let cross = [b[1] * c[2] - c[1] * b[2], b[2] * c[0] - c[2] * b[0], b[0] * c[1] - c[0] * b[1]];
     a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]
 }

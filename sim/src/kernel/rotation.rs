@@ -160,8 +160,9 @@ pub(crate) fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3]
     each!(3, i => each!(3, j => dot(&r[i], &a[j])))
 }
 
+/// The scalar product.
 #[inline(always)]
-fn dot<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> L {
+pub(crate) fn dot<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> L {
     a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 

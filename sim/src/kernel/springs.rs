@@ -212,15 +212,11 @@ impl Stencil {
 
 impl Stepper for Stencil {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], _: &[f64]) {
-        for node in 0..self.nodes {
-            self.set_node(node, position[node], velocity[node]);
-        }
+        self.place(position, velocity);
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], _: &mut [f64]) {
-        for node in 0..self.nodes {
-            (position[node], velocity[node]) = self.node(node);
-        }
+        self.read(position, velocity);
     }
 
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {

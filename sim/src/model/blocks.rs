@@ -102,30 +102,6 @@ impl Gather {
     }
 }
 
-/// For each node, the springs attached to it, and their signs.
-pub(super) struct SignedGather {
-    /// Twice the index of the spring, plus one at the second node of the spring.
-    entries: EntriesOfNode,
-}
-
-impl SignedGather {
-    pub(super) fn new(nodes: usize, springs: &[[u32; 2]]) -> Self {
-        let ends = (0..).zip(springs).flat_map(|(at, &[i, j])| [(2 * at, i), (2 * at + 1, j)]);
-        Self { entries: EntriesOfNode::new(nodes, ends) }
-    }
-
-    /// Adds the forces of its springs to each node, in rising order; with the opposite sign at the second node of a
-    /// spring.
-    pub(super) fn add(&self, crew: &Crew, entries: &[DVec3], forces: &mut [DVec3]) {
-        for_each_one(crew, forces, &|node, force| {
-            for &entry in self.entries.of(node) {
-                let spring = entries[entry / 2];
-                *force += if entry % 2 == 0 { spring } else { -spring };
-            }
-        });
-    }
-}
-
 /// The entries of all nodes, sorted by node, and rising for each node.
 pub(crate) struct EntriesOfNode {
     /// Where the entries of each node begin; the last number is where all end.

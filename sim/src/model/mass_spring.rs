@@ -358,15 +358,15 @@ struct SpringForces {
     natural_length: Vec<f64>,
     /// The relative stiffness of each spring; `None` if all are 1.
     parts: Option<Vec<f64>>,
-    /// Adds up the spring forces of each node; a spring acts on its second node with the opposite force.
-    gather: blocks::SignedGather,
+    /// Adds up the forces of springs on each node.
+    gather: blocks::Gather,
 }
 
 impl SpringForces {
     fn new(model: MassSpring, body: &Body) -> Self {
         let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
         let natural_length = model.springs.iter().map(length).collect();
-        let gather = blocks::SignedGather::new(body.len(), &model.springs);
+        let gather = blocks::Gather::new(body.len(), model.springs.iter().flatten().copied());
         Self { parts: model.parts(body), model, natural_length, gather }
     }
 
@@ -387,19 +387,21 @@ impl ForceModel for SpringForces {
         forces: &mut [DVec3],
     ) {
         let Self { model, natural_length, gather, .. } = self;
-        let (crew, spring_forces) = scratch.parts(natural_length.len());
-        blocks::for_each_one(crew, spring_forces, &|spring, out| {
+        let (crew, on_ends) = scratch.parts(2 * natural_length.len());
+        blocks::for_each_one(crew, on_ends.as_chunks_mut().0, &|spring, [on_first, on_second]| {
             let [i, j] = model.springs[spring].map(|node| node as usize);
             let [k, d] = self.constants(spring);
-            *out = spring_force(
+            *on_first = spring_force(
                 at.position[i] - at.position[j],
                 at.velocity[i] - at.velocity[j],
                 natural_length[spring],
                 k,
                 d,
             );
+            // A spring acts on its second node with the opposite force.
+            *on_second = -*on_first;
         });
-        gather.add(crew, spring_forces, forces);
+        gather.add(crew, on_ends, forces);
     }
 
     fn is_damped(&self) -> bool {

@@ -33,7 +33,7 @@ use super::{ElasticModel, ForceModel, Misfit, Properties, Setting, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::fill;
-use crate::kernel::rotation::cross;
+use crate::kernel::rotation::{cross, dot};
 use crate::lanes::{Lanes, each};
 use crate::law::{ByLaw, Corners, Element, Law, Rigid, off};
 use crate::material::{Damping, Material};
@@ -151,11 +151,6 @@ fn axes(corners: usize) -> usize {
 #[inline(always)]
 fn metric<L: Lanes>([a, b, c]: &[[L; 3]; 3]) -> [L; 6] {
     [dot(a, a), dot(b, b), dot(c, c), dot(a, b), dot(a, c), dot(b, c)]
-}
-
-#[inline(always)]
-fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
-    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 
 /// The rows of a symmetric matrix.

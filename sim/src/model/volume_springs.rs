@@ -26,10 +26,11 @@ use super::{
 use crate::body::Body;
 use crate::element::Dimension;
 use crate::fill;
-use crate::kernel::rotation::{Matrix, cross};
+use crate::kernel::rotation::{Matrix, cross, dot};
 use crate::lanes::each;
 use crate::lists::IndexLists;
-use glam::{DMat3, DVec3};
+use crate::material;
+use glam::DMat3;
 #[cfg(feature = "scene")]
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -114,12 +115,10 @@ impl Vectorised for VolumeSprings {
 
 /// `Σ |b|²` of an element (1/m²): the trace of `M⁻¹`.
 fn spread(body: &Body, nodes: &[u32]) -> f64 {
-    let rest = || nodes.iter().map(|&node| body.rest[node as usize]);
-    let middle = rest().sum::<DVec3>() / nodes.len() as f64;
-    let outer = |at: DVec3| DMat3::from_cols(at * at.x, at * at.y, at * at.z);
-    let moment = rest().fold(DMat3::ZERO, |sum, at| sum + outer(at - middle));
+    let (_, [xx, yy, zz, xy, xz, yz]) = material::spread(body, nodes);
     let flat = body.dimension == Dimension::Plane;
-    let inverse = (moment + DMat3::from_diagonal(DVec3::Z * f64::from(u8::from(flat)))).inverse();
+    let zz = if flat { 1.0 } else { zz };
+    let inverse = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]).inverse();
     inverse.x_axis.x + inverse.y_axis.y + if flat { 0.0 } else { inverse.z_axis.z }
 }
 
@@ -160,12 +159,6 @@ fn cofactors<L: Lanes>([x, y, z]: &Matrix<L>) -> (Matrix<L>, L) {
     let (cofactors, one) = ([cross(y, z), cross(z, x), cross(x, y)], L::splat(1.0));
     let of = &cofactors[0];
     (cofactors, dot(x, of) - one)
-}
-
-/// The scalar product of two vectors.
-#[inline(always)]
-fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
-    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 
 impl Law for Sum {
@@ -268,6 +261,7 @@ mod tests {
     use crate::surroundings::Surroundings;
     use crate::topology::Springs;
     use crate::world::{Stepping, World};
+    use glam::DVec3;
 
     /// A square of 1 m with springs at its sides and diagonals, and a node of 1 kg at each corner.
     fn square() -> (Arc<Body>, MassSpring) {

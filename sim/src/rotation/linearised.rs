@@ -11,8 +11,8 @@ pub fn solve(a: DMat3) -> DVec3 {
     cramer(columns(a), -torque(a))
 }
 
-/// The solution of three equations by Cramer's rule, as three triple products.
-fn cramer([c0, c1, c2]: [DVec3; 3], right: DVec3) -> DVec3 {
+/// The solution of three equations, given by the columns of their matrix, by Cramer's rule, as three triple products.
+pub fn cramer([c0, c1, c2]: [DVec3; 3], right: DVec3) -> DVec3 {
     let c12 = c1.cross(c2);
     let determinant = c0.dot(c12);
     DVec3::new(right.dot(c12), c0.dot(right.cross(c2)), c0.dot(c1.cross(right))) / determinant
@@ -24,8 +24,8 @@ pub(crate) fn determinant(a: DMat3) -> f64 {
     c0.dot(c1.cross(c2))
 }
 
-/// The columns of `tr(A) I − A`.
-fn columns(a: DMat3) -> [DVec3; 3] {
+/// The columns of `tr(A) I − A`, the matrix of Eq. (15).
+pub fn columns(a: DMat3) -> [DVec3; 3] {
     let trace = a.x_axis.x + a.y_axis.y + a.z_axis.z;
     [DVec3::X * trace - a.x_axis, DVec3::Y * trace - a.y_axis, DVec3::Z * trace - a.z_axis]
 }

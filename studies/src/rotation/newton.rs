@@ -5,7 +5,7 @@
 //! optimum if `H` is not positive definite.
 
 use glam::{DMat3, DQuat, DVec3};
-use localshape::sim::rotation::linearised::{iterate, rotation_by_arctangent};
+use localshape::sim::rotation::linearised::{columns, cramer, iterate, rotation_by_arctangent};
 use localshape::sim::rotation::torque;
 
 /// By the angle `atan |w|`, as the paper's solver.
@@ -69,19 +69,6 @@ fn solve(a: DMat3) -> DVec3 {
 /// The columns of `H`.
 fn hessian(a: DMat3) -> [DVec3; 3] {
     columns((a + a.transpose()) * 0.5)
-}
-
-/// The columns of `tr(A) I − A`.
-fn columns(a: DMat3) -> [DVec3; 3] {
-    let trace = a.x_axis.x + a.y_axis.y + a.z_axis.z;
-    [DVec3::X * trace - a.x_axis, DVec3::Y * trace - a.y_axis, DVec3::Z * trace - a.z_axis]
-}
-
-/// The solution of three equations by Cramer's rule, as three triple products.
-fn cramer([c0, c1, c2]: [DVec3; 3], right: DVec3) -> DVec3 {
-    let c12 = c1.cross(c2);
-    let determinant = c0.dot(c12);
-    DVec3::new(right.dot(c12), c0.dot(right.cross(c2)), c0.dot(c1.cross(right))) / determinant
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The linear map that fits an element best, for what goes beyond the paper.
 
 use crate::element::Dimension;
+use crate::rotation::moment;
 use glam::{DMat3, DVec3};
 
 /// What of the rest shape of an element the map follows from.
@@ -24,21 +25,16 @@ pub(super) struct Stretch {
     pub(super) volume: f64,
 }
 
-/// `M` of an element with these `R0` (m).
-fn moment(rest: &[DVec3]) -> DMat3 {
-    rest.iter().fold(DMat3::ZERO, |sum, &rest| sum + DMat3::from_cols(rest * rest.x, rest * rest.y, rest * rest.z))
-}
-
 /// Whether the nodes of an element with these `R0` (m) are those of a simplex, so that a linear map fits all their displacements.
 #[cfg(feature = "scene")]
 pub(super) fn is_simplex(rest: &[DVec3]) -> bool {
-    pseudo_inverse(moment(rest)).1 + 1 == rest.len()
+    pseudo_inverse(moment(rest, rest.iter().copied())).1 + 1 == rest.len()
 }
 
 impl AtRest {
     /// Of an element with these `R0` (m).
     pub(super) fn new(rest: &[DVec3], dimension: Dimension) -> Self {
-        Self::of_moment(moment(rest), dimension)
+        Self::of_moment(moment(rest, rest.iter().copied()), dimension)
     }
 
     /// Of an element with this `M` (m²).
