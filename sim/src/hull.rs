@@ -345,20 +345,12 @@ fn from_line(vector: DVec3, line: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::Noise;
     use glam::DQuat;
 
-    /// Pseudo-random numbers from 0 to 1.
-    struct Noise(u64);
-
-    impl Noise {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next())
-        }
+    /// A vector with coordinates from 0 to 1.
+    fn place(noise: &mut Noise) -> DVec3 {
+        0.5 * noise.vector() + 0.5
     }
 
     fn volume(points: &[DVec3], faces: &[Vec<u32>]) -> f64 {
@@ -401,8 +393,8 @@ mod tests {
         check(points);
         for scale in [1.0, 1e-9, 1e9] {
             for _ in 0..50 {
-                let turn = DQuat::from_vec4((noise.vector() - 0.5).extend(noise.next() + 0.01)).normalize();
-                let shift = noise.vector() * 3.0;
+                let turn = DQuat::from_vec4((0.5 * noise.vector()).extend(noise.share() + 0.01)).normalize();
+                let shift = place(&mut noise) * 3.0;
                 check(&points.iter().map(|&point| (turn * point + shift) * scale).collect::<Vec<_>>());
             }
         }
@@ -462,10 +454,10 @@ mod tests {
     fn boxes_along_the_axes_have_the_faces_that_are_found_for_any_points() {
         let mut noise = Noise(3);
         for _ in 0..200 {
-            let (low, size) = (noise.vector() - 0.5, noise.vector() + 0.01);
+            let (low, size) = (0.5 * noise.vector(), place(&mut noise) + 0.01);
             let corner = |bit: u32| low + size * DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1)));
             let mut points: Vec<_> = (0..8).map(corner).collect();
-            (1..8).for_each(|at| points.swap(at, (noise.next() * at as f64) as usize));
+            (1..8).for_each(|at| points.swap(at, noise.below(at)));
             let (low, high) = bounds(&points);
             let size = (high - low).max_element();
             let scaled: Vec<_> = points.iter().map(|&point| (point - low) / size).collect();
@@ -486,9 +478,9 @@ mod tests {
             let squeeze = [1.0, 1e-2, 1e-4, 3e-6][case / 3 % 4];
             let points: Vec<_> = (0..count)
                 .map(|_| {
-                    let at = noise.vector();
+                    let at = place(&mut noise);
                     let at = if grid > 0.0 { (at * grid).floor() / grid } else { at };
-                    (at + (noise.vector() - 0.5) * shake) * DVec3::new(1.0, 1.0, squeeze)
+                    (at + 0.5 * noise.vector() * shake) * DVec3::new(1.0, 1.0, squeeze)
                 })
                 .collect();
             let faces = faces(&points);

@@ -51,6 +51,8 @@ mod material;
 mod mode;
 pub mod model;
 mod motion;
+#[cfg(test)]
+mod noise;
 mod part;
 mod placement;
 mod recording;

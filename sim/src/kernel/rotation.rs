@@ -322,6 +322,7 @@ fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: 
 mod tests {
     use super::*;
     use crate::lanes::{Set, Work};
+    use crate::noise::Noise;
     use crate::rotation::{linearised, robust};
     use glam::DVec3;
 
@@ -353,23 +354,14 @@ mod tests {
         2.0 * (a * b.conjugate()).xyz().length()
     }
 
-    /// Pseudo-random numbers from −1 to 1.
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-    }
-
-    fn quaternion(random: &mut impl FnMut() -> f64, size: f64) -> DQuat {
-        DQuat::from_xyzw(random() * size, random() * size, random() * size, 1.0).normalize()
+    fn quaternion(random: &mut Noise, size: f64) -> DQuat {
+        DQuat::from_vec4((random.vector() * size).extend(1.0)).normalize()
     }
 
     /// Moments of many kinds of elements, each with an initial rotation: well-shaped and rotated a little, rotated far,
     /// squeezed, turned inside out, flat, on a line, at a point.
     fn all_sorts(largest_turn: f64) -> Vec<(DMat3, DQuat)> {
-        let mut random = random(3);
+        let mut random = Noise(3);
         let stretches = [
             DVec3::ONE,
             DVec3::new(1.0, 0.8, 0.6),

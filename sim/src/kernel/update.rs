@@ -363,6 +363,7 @@ mod tests {
     use crate::contact::{FrictionOf, Obstacle, Shape};
     use crate::lanes::{Set, Work};
     use crate::motion::Motion;
+    use crate::noise::Noise;
 
     struct Bounce<'a>(&'a Floor, [DVec3; MOST], [DVec3; MOST]);
 
@@ -384,28 +385,24 @@ mod tests {
     /// Above, below and on floors, with and without slip, friction and restitution.
     #[test]
     fn the_rebound_in_lanes_has_the_bits_of_the_plain_one() {
-        let mut seed = 9u64;
-        let mut noise = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
+        let mut noise = Noise(9);
         for round in 0..400 {
-            let normal = if round % 2 == 0 { DVec3::Y } else { DVec3::new(noise(), 1.0, noise()).normalize() };
+            let normal =
+                if round % 2 == 0 { DVec3::Y } else { DVec3::new(noise.next(), 1.0, noise.next()).normalize() };
             let pick = |of: [f64; 3]| of[round / 2 % 3];
-            let (height, restitution, friction) = (noise(), pick([0.0, 0.5, 1.0]), pick([0.3, 0.0, 10.0]));
+            let (height, restitution, friction) = (noise.next(), pick([0.0, 0.5, 1.0]), pick([0.3, 0.0, 10.0]));
             let (shape, pivot) = (Shape::Floor { normal, height }, DVec3::ZERO);
             let friction_of = if round / 6 % 2 == 0 { FrictionOf::Path } else { FrictionOf::Velocity };
             let obstacle = Obstacle { shape, motion: Motion::Still, pivot, restitution, friction, friction_of };
             let floor = obstacle.at(1.0, 0.1).still_floor().expect("a floor that stands still");
-            let mut vector = || DVec3::new(noise(), noise(), noise());
             let position: [DVec3; MOST] = std::array::from_fn(|lane| {
-                let free = vector() * 0.1 + normal * height;
+                let free = noise.vector() * 0.1 + normal * height;
                 if lane % 3 == 0 { free + normal * (height - normal.dot(free)) } else { free }
             });
             let velocity: [DVec3; MOST] = std::array::from_fn(|lane| match lane {
                 0 => -normal,
                 1 => DVec3::ZERO,
-                _ => vector(),
+                _ => noise.vector(),
             });
             for set in Set::all() {
                 let (width, p, v) = set.run(Bounce(&floor, position, velocity));

@@ -146,20 +146,17 @@ fn normalise(vector: &mut [DVec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::Noise;
 
     /// Symmetric matrices with random entries, of full and of lower rank, against their eigenvalues by another method.
     #[test]
     fn agrees_with_dense_eigenvalues() {
         for (nodes, rank) in [(1, 3), (2, 6), (5, 4), (20, 60), (20, 7)] {
             let size = 3 * nodes;
-            let mut seed = 7_u64;
-            let mut noise = || {
-                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-            };
-            let half = nalgebra::DMatrix::from_fn(size, rank, |_, _| noise());
+            let mut noise = Noise(7);
+            let half = nalgebra::DMatrix::from_fn(size, rank, |_, _| noise.next());
             let matrix = &half * half.transpose();
-            let start: Vec<_> = (0..nodes).map(|_| DVec3::new(noise(), noise(), noise())).collect();
+            let start: Vec<_> = (0..nodes).map(|_| noise.vector()).collect();
             let product = |from: &[DVec3], to: &mut [DVec3]| {
                 let from: Vec<f64> = from.iter().flat_map(|part| part.to_array()).collect();
                 let out = &matrix * nalgebra::DVector::from_vec(from);

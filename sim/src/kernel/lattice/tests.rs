@@ -3,13 +3,14 @@
 use super::*;
 use crate::contact::{Bound, Obstacle, Shape};
 use crate::kernel::Conditions;
-use crate::kernel::stepper::{PartStepper, Rollback};
-use crate::kernel::tests::{FREE, PEFRL, Random, rotations, shape_based, stepped_by_reference};
+use crate::kernel::tests::{
+    FREE, Moving, PEFRL, Whole, obstacle, same, shape_based, stepped_by_reference, with_rotations,
+};
 use crate::lists::IndexLists;
 use crate::material::Material;
 use crate::model::shape_based::{DampingReading, ShapeBased};
-use crate::state::Runaway;
-use crate::state::State;
+use crate::noise::Noise;
+use crate::state::{Runaway, State};
 use crate::surroundings::Surroundings;
 use glam::DQuat;
 use std::sync::Arc;
@@ -36,19 +37,16 @@ fn lattice(cells: [usize; 3], sides: DVec3) -> Arc<Body> {
 
 /// Rotated, stretched, randomly displaced and moving, close above the floor.
 fn start(body: &Body, shake: f64) -> State {
-    let mut random = Random(7);
+    let mut random = Noise(7);
     let turn = DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize();
     let spin = DVec3::new(0.5, 2.0, -1.0);
     let side = (body.rest[1] - body.rest[0]).length();
     let position: Vec<_> = body
         .rest
         .iter()
-        .map(|&rest| {
-            turn * (rest * DVec3::new(1.05, 0.97, 1.0)) + random.vector(Dimension::Space) * (shake * side) + DVec3::Y
-        })
+        .map(|&rest| turn * (rest * DVec3::new(1.05, 0.97, 1.0)) + random.vector() * (shake * side) + DVec3::Y)
         .collect();
-    let velocity =
-        position.iter().map(|&at| spin.cross(at) + random.vector(Dimension::Space) * 0.1 - DVec3::Y).collect();
+    let velocity = position.iter().map(|&at| spin.cross(at) + random.vector() * 0.1 - DVec3::Y).collect();
     State::new(position, velocity)
 }
 
@@ -89,15 +87,7 @@ fn model(body: &Body, parameters: Parameters) -> ShapeBased {
 
 fn floor() -> Obstacle {
     let normal = DVec3::new(0.1, 1.0, 0.0).normalize();
-    let shape = Shape::Floor { normal, height: 0.02 };
-    Obstacle {
-        shape,
-        motion: crate::motion::Motion::Still,
-        pivot: DVec3::ZERO,
-        restitution: 0.5,
-        friction: 0.3,
-        friction_of: Default::default(),
-    }
+    obstacle(Shape::Floor { normal, height: 0.02 }, 0.5, 0.3)
 }
 
 fn bound(floor: &Obstacle) -> Bound {
@@ -105,7 +95,16 @@ fn bound(floor: &Obstacle) -> Bound {
     Bound::HalfSpace { normal, height: height + 1e-9 }
 }
 
-fn run(body: &Body, state: &State, parameters: Parameters, set: Set, calls: u64, steps: u64) -> (State, Vec<f64>) {
+/// A number of calls with some steps each, above the floor.
+fn advanced(mut kernel: Moving, start: &Whole, [calls, steps]: [u64; 2]) -> Whole {
+    let floor = floor();
+    let resolve = |_: u64, _: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
+    let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
+    (0..calls).for_each(|_| kernel.advance(steps, around).expect("no runaway"));
+    kernel.stored(start)
+}
+
+fn run(body: &Body, state: &State, parameters: Parameters, set: Set, calls: u64, steps: u64) -> Whole {
     run_by(1, Scheme::SemiImplicitEuler, body, state, parameters, set, [calls, steps])
 }
 
@@ -116,25 +115,15 @@ fn run_by(
     state: &State,
     parameters: Parameters,
     set: Set,
-    [calls, steps]: [u64; 2],
-) -> (State, Vec<f64>) {
-    let (mut rollback, mut memory) = (rollback(body, parameters, scheme, set), rotations(body, state));
-    rollback.load(0, &state.position, &state.velocity, &memory);
-    let floor = floor();
-    let resolve = |_: u64, _: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
-    let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
-    for call in 1..=calls {
-        rollback.advance(call * steps, &around, &Crew::new(threads)).expect("no runaway");
-    }
-    let mut state = state.clone();
-    rollback.store(&mut state.position, &mut state.velocity, &mut memory);
-    (state, memory)
+    steps: [u64; 2],
+) -> Whole {
+    let start = with_rotations(body, state.clone());
+    advanced(kernel(body, &start, parameters, scheme, set, threads), &start, steps)
 }
 
-fn rollback(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Rollback {
-    let stepper = Box::new(LatticeStepper::new(body, parameters, scheme, set).expect("a lattice"));
-    let memory = 0..4 * body.elements.len() + 1;
-    Rollback::new(vec![PartStepper { stepper, nodes: 0..body.len(), memory }], scheme)
+fn kernel(body: &Body, start: &Whole, parameters: Parameters, scheme: Scheme, set: Set, threads: usize) -> Moving {
+    let stepper = LatticeStepper::new(body, parameters, scheme, set).expect("a lattice");
+    Moving::new(Box::new(stepper), start, scheme, threads)
 }
 
 fn reference(scheme: Scheme, body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
@@ -225,16 +214,8 @@ fn steps_are_those_of_the_kernel_for_any_elements() {
         let scheme = Scheme::SemiImplicitEuler;
         let conditions = Conditions { scheme, step: STEP, set: Set::best() };
         let stepper = model(&body, parameters).by_law(&body, &conditions, None).stepper;
-        let mut memory = rotations(&body, &state);
-        let parts = vec![PartStepper { stepper, nodes: 0..body.len(), memory: 0..memory.len() }];
-        let mut general = Rollback::new(parts, scheme);
-        general.load(0, &state.position, &state.velocity, &memory);
-        let floor = floor();
-        let resolve = |_: u64, _: usize, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
-        let around = Around { gravity: GRAVITY, bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
-        general.advance(200, &around, &Crew::new(1)).expect("no runaway");
-        let mut of_general = state.clone();
-        general.store(&mut of_general.position, &mut of_general.velocity, &mut memory);
+        let start = with_rotations(&body, state.clone());
+        let (of_general, _) = advanced(Moving::new(stepper, &start, scheme, 1), &start, [1, 200]);
         let (found, _) = run(&body, &state, parameters, Set::best(), 1, 200);
         assert!(distance(&of_general, &found) < 1e-12, "{parameters:?}: {:e}", distance(&of_general, &found));
     }
@@ -248,8 +229,7 @@ fn every_set_has_the_same_bits() {
         let state = start(&body, 0.6);
         let printed = [Rotation::Optimum, Rotation::Arctangent { passes: 2 }].map(|rotation| parameters(0.3, rotation));
         for parameters in printed.into_iter().chain(beyond()) {
-            let all: Vec<_> = Set::all().map(|set| run(&body, &state, parameters, set, 1, 300)).collect();
-            assert!(all.windows(2).all(|two| two[0] == two[1]), "{cells:?} {parameters:?}");
+            same(Set::all(), &[1], |set, _| run(&body, &state, parameters, set, 1, 300));
         }
     }
 }
@@ -261,11 +241,9 @@ fn every_number_of_threads_has_the_same_bits() {
         let state = start(&body, 0.3);
         for parameters in [parameters(0.3, Rotation::Optimum), beyond()[3]] {
             for scheme in SCHEMES {
-                let by = |threads| run_by(threads, scheme, &body, &state, parameters, Set::best(), [2, 20]);
-                let one = by(1);
-                for threads in [2, 3, 7] {
-                    assert_eq!(by(threads), one, "{cells:?} {scheme:?} {threads} {parameters:?}");
-                }
+                same([Set::best()].into_iter(), &[1, 2, 3, 7], |set, threads| {
+                    run_by(threads, scheme, &body, &state, parameters, set, [2, 20])
+                });
             }
         }
     }
@@ -274,35 +252,26 @@ fn every_number_of_threads_has_the_same_bits() {
 #[test]
 fn before_a_runaway_the_state_is_that_of_the_step_before() {
     let body = lattice([5, 3, 6], DVec3::splat(0.5));
-    let state = start(&body, 0.05);
+    let start = with_rotations(&body, start(&body, 0.05));
     // Far beyond the limit of stability.
     let parameters = Parameters { step: 0.06, ..parameters(0.0, Rotation::Optimum) };
     let around = Around { speed_limit: &|step| 1e6 + step as f64, ..FREE };
-    let memory = rotations(&body, &state);
     for scheme in SCHEMES {
-        let make = || {
-            let mut rollback = rollback(&body, parameters, scheme, Set::best());
-            rollback.load(0, &state.position, &state.velocity, &memory);
-            rollback
-        };
-        let read = |rollback: &mut Rollback| {
-            let (mut state, mut memory) = (state.clone(), memory.clone());
-            rollback.store(&mut state.position, &mut state.velocity, &mut memory);
-            (rollback.steps(), state, memory)
-        };
-        let mut one = make();
-        let runaway = one.advance(1000, &around, &Crew::new(1)).expect_err("unstable");
-        let taken = one.steps();
+        let make = |threads| kernel(&body, &start, parameters, scheme, Set::best(), threads);
+        let read = |kernel: &mut Moving| (kernel.0.steps(), kernel.stored(&start));
+        let mut one = make(1);
+        let runaway = one.advance(1000, around).expect_err("unstable");
+        let taken = one.0.steps();
         assert!((1..1000).contains(&taken), "{taken}");
-        let mut up_to_there = make();
-        assert_eq!(up_to_there.advance(taken, &around, &Crew::new(1)), Ok(()));
+        let mut up_to_there = make(1);
+        assert_eq!(up_to_there.advance(taken, around), Ok(()));
         assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
-        assert_eq!(up_to_there.advance(taken + 1, &around, &Crew::new(1)), Err(runaway));
+        assert_eq!(up_to_there.advance(1, around), Err(runaway));
         assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
         // In calls of one step, and with several threads.
         for (threads, steps) in [(1, 1), (2, 1000), (3, 1000), (3, 7)] {
-            let (mut other, crew) = (make(), Crew::new(threads));
-            let lost = (1..).find_map(|call| other.advance(call * steps, &around, &crew).err());
+            let mut other = make(threads);
+            let lost = (0..1000).find_map(|_| other.advance(steps, around).err());
             assert_eq!(lost, Some(runaway));
             assert!(read(&mut other) == read(&mut one), "{scheme:?} {threads} {steps}");
         }
@@ -312,14 +281,14 @@ fn before_a_runaway_the_state_is_that_of_the_step_before() {
 #[test]
 fn what_is_no_number_is_lost_at_once() {
     let body = lattice([3, 2, 2], DVec3::splat(0.5));
-    let state = start(&body, 0.0);
+    let (mut state, memory) = with_rotations(&body, start(&body, 0.0));
+    state.position[17].y = f64::NAN;
+    let start = (state, memory);
     let parameters = parameters(0.1, Rotation::Optimum);
-    let mut rollback = rollback(&body, parameters, Scheme::SemiImplicitEuler, Set::best());
-    let mut position = state.position.clone();
-    position[17].y = f64::NAN;
-    rollback.load(0, &position, &state.velocity, &rotations(&body, &state));
-    assert!(matches!(rollback.advance(3, &FREE, &Crew::new(1)), Err(Runaway { .. })) && rollback.steps() == 0);
-    assert!(rollback.node(17).0.y.is_nan() && rollback.node(0) == (state.position[0], state.velocity[0]));
+    let mut kernel = kernel(&body, &start, parameters, Scheme::SemiImplicitEuler, Set::best(), 1);
+    assert!(matches!(kernel.advance(3, FREE), Err(Runaway { .. })) && kernel.0.steps() == 0);
+    let (found, _) = kernel.stored(&start);
+    assert!(found.position[17].y.is_nan() && found.position[0] == start.0.position[0]);
 }
 
 #[test]

@@ -5,23 +5,19 @@ use crate::kernel::general::{SMALL, parts};
 
 /// Steps a body with the lanes of every set, which must agree bit for bit, and with the reference.
 fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, damping: f64, scheme: Scheme) {
-    let memory = rotations(body, &start);
-    let start = (start, memory);
-    let mut found: Option<Whole> = None;
-    for set in Set::all() {
+    let start = with_rotations(body, start);
+    let (found, _) = same(Set::all(), &[1], |set, _| {
         let mut kernel = general(body, &start, rotation, damping, scheme, set);
         // The result does not depend on how steps are divided into calls.
         for steps in [1, 7, 100, STEPS - 108] {
             assert_eq!(kernel.advance(steps, FREE), Ok(()), "{name}");
         }
-        let here = kernel.stored(&start);
-        assert!(found.as_ref().is_none_or(|found| *found == here), "{name}: {set:?} has other bits");
-        found = Some(here);
-    }
+        kernel.stored(&start)
+    });
     let model = shape_based(rotation, damping);
     let mut world = reference(body, &start.0, &model, scheme, Vec::new());
     world.advance(STEPS);
-    let far = distance(&found.expect("some set").0, world.state());
+    let far = distance(&found, world.state());
     assert!(far <= 1e-12, "{name}, {rotation:?}, D = {damping}, {scheme:?}: {far:e}");
 }
 
@@ -70,20 +66,16 @@ fn a_body_of_several_parts_steps_like_the_reference() {
     let many = pieces([45, 33, 33], &[4, 6, 8], 11);
     for (body, steps, is_large) in [(some(), 50, false), (filled(stiffened(some())), 50, false), (many, 3, true)] {
         assert_eq!(parts(&body.elements) > SMALL, is_large);
-        let start = start(&body, 3);
-        let start = (start.clone(), rotations(&body, &start));
+        let start = with_rotations(&body, start(&body, 3));
         let mut world = reference(&body, &start.0, &shape_based(TWICE, 10.0), Scheme::SemiImplicitEuler, Vec::new());
         world.advance(steps);
-        let mut found: Option<Whole> = None;
-        for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+        let (found, _) = same(Set::all().skip(1), &[1, 2, 3], |set, threads| {
             let kernel = shape_based(TWICE, 10.0).by_law(&body, &conditions(SEMI, set), None).stepper;
             let mut kernel = Moving::new(kernel, &start, SEMI, threads);
             assert_eq!(kernel.advance(steps, FREE), Ok(()));
-            let here = kernel.stored(&start);
-            assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
-            found = Some(here);
-        }
-        let far = distance(&found.expect("some set").0, world.state());
+            kernel.stored(&start)
+        });
+        let far = distance(&found, world.state());
         assert!(far <= 1e-12, "{far:e}");
     }
 }
@@ -104,8 +96,7 @@ fn elements_without_a_guide_step_like_the_reference() {
             let place = &mut start.position[node as usize];
             *place = middle + (*place - middle) * crush;
         }
-        let memory = rotations(&body, &start);
-        let start = (start, memory);
+        let start = with_rotations(&body, start);
         let model = shape_based(Rotation::Optimum, 10.0);
         let mut world = reference(&body, &start.0, &model, Scheme::SemiImplicitEuler, Vec::new());
         world.advance(20);

@@ -27,17 +27,15 @@ fn reports(
     position: &[DVec3],
     memory: &[f64],
 ) -> [(Report, Shares); 2] {
-    let mut found = None;
-    for (set, threads) in Set::all().flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+    let found = same(Set::all(), &[1, 2, 3], |set, threads| {
         let (energy, crew) = (energy(set), Crew::new(threads));
         let here = with_shares(|share| energy.report(position, memory, Some(share), &crew));
         assert_eq!(here.0, energy.report(position, memory, None, &crew));
-        assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
-        found = Some(here);
-    }
+        here
+    });
     let still = vec![DVec3::ZERO; position.len()];
     let at = Nodes { position, velocity: &still };
-    [found.expect("some set"), with_shares(|share| model.prepare(body).report(at, memory, share))]
+    [found, with_shares(|share| model.prepare(body).report(at, memory, share))]
 }
 
 fn assert_near(name: &str, [found, expected]: [(Report, Shares); 2], largest_alpha: f64, is_unique: bool) {
@@ -90,16 +88,8 @@ fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
 fn assert_strains(name: &str, body: &Body, position: &[DVec3]) {
     let expected: Vec<_> = body.elements.iter().map(|nodes| strain(body, nodes, position)).collect();
     for near in [DMat3::IDENTITY, DMat3::from_quat(DQuat::from_xyzw(0.7, -0.1, 0.1, 0.7).normalize())] {
-        let mut found = None;
-        for (set, threads) in Set::all().flat_map(|set| [1, 3].map(|threads| (set, threads))) {
-            let here = strains(set, body, position, near, &Crew::new(threads));
-            assert!(
-                found.as_ref().is_none_or(|found| *found == here),
-                "{name}: {set:?}, {threads} threads: other bits"
-            );
-            found = Some(here);
-        }
-        for (found, &expected) in found.expect("some set").iter().zip(&expected) {
+        let found = same(Set::all(), &[1, 3], |set, threads| strains(set, body, position, near, &Crew::new(threads)));
+        for (found, &expected) in found.iter().zip(&expected) {
             assert!((found - expected).abs() <= 1e-14 * (1.0 + expected), "{name}: {found} instead of {expected}");
         }
     }
@@ -126,8 +116,8 @@ fn energies_residuals_and_strains_are_those_of_the_reference() {
         for crush in [None].into_iter().chain(crushes.map(Some)) {
             let mut state = start(body, 3);
             let memory = rotations(body, &state);
-            let random = &mut Random(4);
-            state.position.iter_mut().for_each(|place| *place += random.vector(body.dimension) * 0.002);
+            let random = &mut Noise(4);
+            state.position.iter_mut().for_each(|place| *place += vector(random, body.dimension) * 0.002);
             // Some elements among others are turned inside out, flattened or collapsed to a line or a point.
             for nodes in crush.into_iter().flat_map(|_| body.elements.iter().step_by(5)) {
                 let middle = state.position[nodes[0] as usize];

@@ -21,6 +21,7 @@ use crate::model::ElasticModel;
 use crate::model::mass_spring::MassSpring;
 use crate::model::shape_based::{RotationReading, ShapeBased};
 use crate::motion::{Ease, Key, Motion, Offset};
+use crate::noise::Noise;
 use crate::rotation::{best, davenport1968, moment, planar};
 use crate::state::Runaway;
 use crate::state::State;
@@ -36,34 +37,21 @@ const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.0);
 /// Steps in which a run differs from the reference by round-off only.
 const STEPS: u64 = 1000;
 
-/// Pseudo-random numbers from −1 to 1.
-pub(super) struct Random(pub(super) u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        ((0.5 * self.next() + 0.5) * count as f64) as usize
-    }
-
-    pub(super) fn vector(&mut self, dimension: Dimension) -> DVec3 {
-        let [x, y, z] = [self.next(), self.next(), self.next()];
-        DVec3::new(x, y, if dimension == Dimension::Plane { 0.0 } else { z })
-    }
+/// A vector with coordinates from −1 to 1, in the plane or in space.
+fn vector(random: &mut Noise, dimension: Dimension) -> DVec3 {
+    let vector = random.vector();
+    if dimension == Dimension::Plane { vector.with_z(0.0) } else { vector }
 }
 
 /// The nodes of a block of cells with a side of 0.1 m, each moved by up to a fraction of that, and the corners of each
 /// cell: x fastest, or in the plane counter-clockwise.
-fn block(cells: [u32; 3], irregular: f64, random: &mut Random) -> (Dimension, Vec<DVec3>, Vec<Vec<u32>>) {
+fn block(cells: [u32; 3], irregular: f64, random: &mut Noise) -> (Dimension, Vec<DVec3>, Vec<Vec<u32>>) {
     let [nx, ny, nz] = cells;
     let dimension = if nz == 0 { Dimension::Plane } else { Dimension::Space };
     let at = |x: u32, y: u32, z: u32| x + (nx + 1) * (y + (ny + 1) * z);
     let places = (0..=nz).flat_map(|z| (0..=ny).flat_map(move |y| (0..=nx).map(move |x| [x, y, z])));
     let rest = places
-        .map(|place| (DVec3::from_array(place.map(f64::from)) + random.vector(dimension) * irregular) * 0.1)
+        .map(|place| (DVec3::from_array(place.map(f64::from)) + vector(random, dimension) * irregular) * 0.1)
         .collect();
     let places = (0..nz.max(1)).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
     let corners = places.map(|[x, y, z]| match dimension {
@@ -74,7 +62,7 @@ fn block(cells: [u32; 3], irregular: f64, random: &mut Random) -> (Dimension, Ve
 }
 
 /// A body with unequal masses.
-fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &mut Random) -> Arc<Body> {
+fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &mut Noise) -> Arc<Body> {
     let mass = rest.iter().map(|_| 1.0 + 0.5 * random.next()).collect();
     Arc::new(
         Body::builder(rest)
@@ -89,14 +77,14 @@ fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &m
 
 /// A block of whole cells.
 pub(super) fn whole(cells: [u32; 3], irregular: f64, seed: u64) -> Arc<Body> {
-    let random = &mut Random(seed);
+    let random = &mut Noise(seed);
     let (dimension, rest, corners) = block(cells, irregular, random);
     body(dimension, rest, corners.iter().map(|corners| &corners[..]).collect(), random)
 }
 
 /// As many elements as a block has cells, each with some of the corners of a cell; some nodes may belong to no element.
 pub(super) fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
-    let random = &mut Random(seed);
+    let random = &mut Noise(seed);
     let (dimension, rest, corners) = block(cells, 0.2, random);
     let mut elements = IndexLists::default();
     for mut corners in corners {
@@ -111,36 +99,36 @@ pub(super) fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> 
 
 /// The body with elements that are filled in part.
 pub(super) fn filled(body: Arc<Body>) -> Arc<Body> {
-    let random = &mut Random(41);
+    let random = &mut Noise(41);
     let fill = body.elements.iter().map(|_| [1.0, 0.9, 0.37, 0.2][random.below(4)]).collect();
     Arc::new(Body { fill: Some(fill), ..Body::clone(&body) })
 }
 
 /// The body with elements that differ in stiffness.
 pub(super) fn stiffened(body: Arc<Body>) -> Arc<Body> {
-    let random = &mut Random(42);
+    let random = &mut Noise(42);
     let stiffness = body.elements.iter().map(|_| [1.0, 1.7, 0.6, 0.3][random.below(4)]).collect();
     Arc::new(Body { stiffness: Some(stiffness), ..Body::clone(&body) })
 }
 
 /// Rotated, stretched and moving.
 pub(super) fn start(body: &Body, seed: u64) -> State {
-    let random = &mut Random(seed);
+    let random = &mut Noise(seed);
     let turn = match body.dimension {
         Dimension::Plane => DMat3::from_cols_array(&[0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0]),
         Dimension::Space => DMat3::from_quat(DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize()),
     };
     let position = body.rest.iter().map(|&rest| {
-        turn * (rest * DVec3::new(1.1, 0.95, 1.05)) + random.vector(body.dimension) * 0.005 + DVec3::new(0.1, 0.5, 0.0)
+        turn * (rest * DVec3::new(1.1, 0.95, 1.05)) + vector(random, body.dimension) * 0.005 + DVec3::new(0.1, 0.5, 0.0)
     });
     let position = position.collect();
-    let velocity = body.rest.iter().map(|_| random.vector(body.dimension) * 0.1).collect();
+    let velocity = body.rest.iter().map(|_| vector(random, body.dimension) * 0.1).collect();
     State::new(position, velocity)
 }
 
 /// The rotations of the elements at a state, and in space the number of those that took the global solver: the memory with which the
 /// reference starts as well.
-pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
+fn rotations(body: &Body, state: &State) -> Vec<f64> {
     let mut memory = Vec::new();
     for nodes in body.elements.iter() {
         let relative = |places: &[DVec3]| -> Vec<DVec3> {
@@ -180,25 +168,46 @@ fn conditions(scheme: Scheme, set: Set) -> Conditions {
     Conditions { scheme, step: STEP, set }
 }
 
+/// What a computation finds, with the same bits for the lanes of every one of some sets and for each number of threads.
+pub(super) fn same<T: PartialEq>(
+    sets: impl Iterator<Item = Set>,
+    threads: &[usize],
+    find: impl Fn(Set, usize) -> T,
+) -> T {
+    let mut found = None;
+    for (set, &threads) in sets.flat_map(|set| threads.iter().map(move |threads| (set, threads))) {
+        let here = find(set, threads);
+        assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
+        found = Some(here);
+    }
+    found.expect("some set")
+}
+
 /// A state with the rotations.
-type Whole = (State, Vec<f64>);
+pub(super) type Whole = (State, Vec<f64>);
+
+/// A state with its rotations.
+pub(super) fn with_rotations(body: &Body, state: State) -> Whole {
+    let memory = rotations(body, &state);
+    (state, memory)
+}
 
 /// A kernel advancing from a state, with its threads.
-struct Moving(Rollback, Crew);
+pub(super) struct Moving(pub(super) Rollback, Crew);
 
 impl Moving {
-    fn new(stepper: Box<dyn Stepper>, start: &Whole, scheme: Scheme, threads: usize) -> Self {
+    pub(super) fn new(stepper: Box<dyn Stepper>, start: &Whole, scheme: Scheme, threads: usize) -> Self {
         let (nodes, memory) = (0..start.0.position.len(), 0..start.1.len());
         let mut rollback = Rollback::new(vec![PartStepper { stepper, nodes, memory }], scheme);
         rollback.load(0, &start.0.position, &start.0.velocity, &start.1);
         Self(rollback, Crew::new(threads))
     }
 
-    fn advance(&mut self, steps: u64, around: Around<'_>) -> Result<(), Runaway> {
+    pub(super) fn advance(&mut self, steps: u64, around: Around<'_>) -> Result<(), Runaway> {
         self.0.advance(self.0.steps() + steps, &around, &self.1)
     }
 
-    fn stored(&mut self, like: &Whole) -> Whole {
+    pub(super) fn stored(&mut self, like: &Whole) -> Whole {
         let (mut state, mut memory) = like.clone();
         self.0.store(&mut state.position, &mut state.velocity, &mut memory);
         (state, memory)
@@ -252,6 +261,12 @@ fn reference(
 ) -> World {
     let around = Surroundings { gravity: GRAVITY, obstacles, ..Surroundings::default() };
     stepped_by_reference(body, start, model, scheme, around, STEP)
+}
+
+/// An obstacle that stands still.
+pub(super) fn obstacle(shape: Shape, restitution: f64, friction: f64) -> Obstacle {
+    let (motion, pivot, friction_of) = (Motion::Still, DVec3::ZERO, Default::default());
+    Obstacle { shape, motion, pivot, restitution, friction, friction_of }
 }
 
 /// The largest distance between two states, relative to their extent and to the speed of an oscillation over that

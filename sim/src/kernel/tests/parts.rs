@@ -21,15 +21,7 @@ fn meeting(kernel: Kernel, integrator: Integrator, damping: f64, contacts: Optio
         all.position.extend(position.iter().map(|&place| place + DVec3::X * [0.0, beside][at]));
         all.velocity.extend(velocity.iter().map(|&speed| speed + DVec3::X * [3.0, -3.0][at]));
     }
-    let shape = Shape::Floor { normal: DVec3::Y, height: 0.4 };
-    let floor = Obstacle {
-        shape,
-        motion: Motion::Still,
-        pivot: DVec3::ZERO,
-        restitution: 0.5,
-        friction: 0.3,
-        friction_of: Default::default(),
-    };
+    let floor = obstacle(Shape::Floor { normal: DVec3::Y, height: 0.4 }, 0.5, 0.3);
     let held = bodies[0].len() as u32 + 3;
     let grips = vec![Grip { nodes: vec![held], from: 0.0, until: 0.1, motion: Motion::Still }];
     let around = Surroundings { gravity: GRAVITY, obstacles: vec![floor], contacts, grips, ..Surroundings::default() };

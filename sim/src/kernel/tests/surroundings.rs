@@ -7,15 +7,8 @@ fn nodes_rebound_as_in_the_reference() {
     let body = pieces([4, 3, 4], &[4, 8], 14);
     let mut start = start(&body, 4);
     start.velocity.iter_mut().for_each(|velocity| velocity.y -= 3.0);
-    let start = (start.clone(), rotations(&body, &start));
-    let floor = Obstacle {
-        shape: Shape::Floor { normal: DVec3::Y, height: 0.45 },
-        motion: Motion::Still,
-        pivot: DVec3::ZERO,
-        restitution: 0.5,
-        friction: 0.3,
-        friction_of: Default::default(),
-    };
+    let start = with_rotations(&body, start);
+    let floor = obstacle(Shape::Floor { normal: DVec3::Y, height: 0.45 }, 0.5, 0.3);
     for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet, PEFRL] {
         let model = shape_based(TWICE, 10.0);
         let mut world = reference(&body, &start.0, &model, scheme, vec![floor.clone()]);
@@ -42,8 +35,7 @@ fn nodes_rebound_as_in_the_reference() {
 #[test]
 fn a_runaway_leaves_the_state_before_its_step() {
     let body = pieces([4, 3, 4], &[4, 8], 15);
-    let start = start(&body, 5);
-    let start = (start.clone(), rotations(&body, &start));
+    let start = with_rotations(&body, start(&body, 5));
     for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet, PEFRL] {
         for damping in [0.0, 10.0] {
             let make = || general(&body, &start, TWICE, damping, scheme, Set::best());
@@ -79,8 +71,7 @@ fn a_runaway_leaves_the_state_before_its_step() {
 #[test]
 fn the_end_of_a_step_has_the_limit_of_that_step() {
     let body = pieces([4, 3, 4], &[4, 8], 15);
-    let start = start(&body, 5);
-    let start = (start.clone(), rotations(&body, &start));
+    let start = with_rotations(&body, start(&body, 5));
     for damping in [0.0, 10.0] {
         let mut kernel = general(&body, &start, TWICE, damping, Scheme::VelocityVerlet, Set::best());
         let everywhere = Bound::HalfSpace { normal: DVec3::Y, height: f64::INFINITY };
@@ -119,15 +110,9 @@ fn what_holds_and_moves_is_that_of_the_reference() {
     let some_time = vec![grip(&[5, 12], 0.02, 0.03, &dragging)];
     // It moves with the nodes and pushes them.
     let swing = Motion::Swing { period: 0.5, phase: 0.0, amplitude: offset(0.3, 0.4) };
-    let paddle = Obstacle {
-        shape: Shape::Sphere { centre: DVec3::new(-0.25, 0.7, 0.1), radius: 0.25 },
-        motion: swing,
-        pivot: DVec3::ZERO,
-        restitution: 0.0,
-        friction: 0.0,
-        friction_of: Default::default(),
-    };
-    let random = &mut Random(21);
+    let ball = Shape::Sphere { centre: DVec3::new(-0.25, 0.7, 0.1), radius: 0.25 };
+    let paddle = Obstacle { motion: swing, ..obstacle(ball, 0.0, 0.0) };
+    let random = &mut Noise(21);
     let (lattice, any) = (whole([4, 2, 3], 0.0, 22), pieces([3, 2, 2], &[4, 6, 8], 23));
     let listed: Vec<[u32; 2]> = (0..60).map(|_| [random.below(30) as u32, 30 + random.below(30) as u32]).collect();
     let named = lattice.topology().springs(Springs::EdgesFaceDiagonals);

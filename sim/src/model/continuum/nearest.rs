@@ -122,6 +122,7 @@ fn globally_in_arrays(
 mod tests {
     use super::*;
     use crate::lanes::{Set, Work};
+    use crate::noise::Noise;
     use glam::DVec3;
 
     /// `R` and `s − 3` of gradients, one vector after the other.
@@ -151,11 +152,7 @@ mod tests {
 
     /// Gradients with many kinds of stretches, turned by any angle.
     fn all_sorts() -> Vec<DMat3> {
-        let mut state = 5_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut noise = Noise(5);
         let stretches = [
             DVec3::ONE,
             DVec3::new(1.0 + 1e-9, 1.0, 1.0 - 1e-9),
@@ -175,8 +172,7 @@ mod tests {
         ];
         (0..3000)
             .map(|at| {
-                let mut turn =
-                    || DMat3::from_quat(DQuat::from_xyzw(random(), random(), random(), random()).normalize());
+                let mut turn = || DMat3::from_quat(DQuat::from_vec4(noise.vector().extend(noise.next())).normalize());
                 let axes = turn();
                 turn() * axes * DMat3::from_diagonal(stretches[at % stretches.len()]) * axes.transpose()
             })
