@@ -5,8 +5,9 @@
 
 use super::bodies::{MASS, Placed, SIDE, Setting, cubes, obstacle};
 use super::{Measured, Trial};
+use crate::material::hold;
 use glam::{DQuat, DVec3};
-use localshape::sim::{BodyContact, Grip, Motion, Shape, World};
+use localshape::sim::{BodyContact, Shape, World};
 
 const STIFFNESS: f64 = 1e4;
 
@@ -121,8 +122,7 @@ fn bounces(cells: u32, parts: u32, restitution: f64, periods: u32) -> Vec<Measur
     let end = |at: f64| (0..body.len()).filter(|&node| (body.rest()[node].x - at).abs() < 1e-9).collect::<Vec<_>>();
     let tip = end(near);
     let mut setting = setting(parts, restitution);
-    let held = end(-near).into_iter().map(|node| node as u32).collect();
-    setting.around.grips = vec![Grip { nodes: held, from: 0.0, until: f64::INFINITY, motion: Motion::Still }];
+    setting.around.grips = vec![hold(&end(-near))];
     setting.around.obstacles = vec![obstacle(wall(near - 0.025 * SIDE), [restitution, 0.0])];
     let mut world = setting.world(&[Placed::still(&body, DVec3::ZERO)]);
     let mut start = world.state().clone();

@@ -18,24 +18,23 @@ pub(super) const GRAVITY: f64 = 9.81;
 /// A block of cells around the origin, each of [`MASS`] and in eight parts for its corners, with its nodes moved by `place`, which gets
 /// coordinates from −1 to 1 and places (m).
 pub(super) fn block(cells: [u32; 3], place: impl Fn(DVec3, DVec3) -> DVec3) -> Arc<Body> {
+    let half = DVec3::from_array(cells.map(f64::from)) * 0.5;
+    let (rest, elements) = lattice(cells, |at| place((at - half) / half, (at - half) * SIDE));
+    let mut mass = vec![0.0; rest.len()];
+    elements.indices().iter().for_each(|&node| mass[node as usize] += MASS / 8.0);
+    Arc::new(Body::builder(rest).elements(elements).masses(mass).build().expect("a block"))
+}
+
+/// The nodes and the cells of a lattice, both with x fastest. `place` gets the numbers of cells before a node along each axis.
+pub(crate) fn lattice(cells: [u32; 3], place: impl Fn(DVec3) -> DVec3) -> (Vec<DVec3>, IndexLists) {
     let nodes = cells.map(|cells| cells + 1);
     let number = |at: [u32; 3]| at[0] + nodes[0] * (at[1] + nodes[1] * at[2]);
     let grid =
         |[nx, ny, nz]: [u32; 3]| (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
-    let half = DVec3::from_array(cells.map(f64::from)) * 0.5;
-    let rest: Vec<_> = grid(nodes)
-        .map(|at| DVec3::from_array(at.map(f64::from)) - half)
-        .map(|from| place(from / half, from * SIDE))
-        .collect();
+    let corner = |cell: [u32; 3], bit: u32| number([0, 1, 2].map(|axis| cell[axis] + (bit >> axis & 1)));
     let mut elements = IndexLists::default();
-    let mut mass = vec![0.0; rest.len()];
-    for cell in grid(cells) {
-        let corners =
-            [0u32, 1, 2, 3, 4, 5, 6, 7].map(|bit| number([0, 1, 2].map(|axis| cell[axis] + (bit >> axis & 1))));
-        corners.iter().for_each(|&node| mass[node as usize] += MASS / 8.0);
-        elements.push(&corners);
-    }
-    Arc::new(Body::builder(rest).elements(elements).masses(mass).build().expect("a block"))
+    grid(cells).for_each(|cell| elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|bit| corner(cell, bit))));
+    (grid(nodes).map(|at| place(DVec3::from_array(at.map(f64::from)))).collect(), elements)
 }
 
 /// A block of cubes.
@@ -103,7 +102,7 @@ impl Setting {
 }
 
 /// An obstacle at rest.
-pub(super) fn obstacle(shape: Shape, [restitution, friction]: [f64; 2]) -> Obstacle {
+pub(crate) fn obstacle(shape: Shape, [restitution, friction]: [f64; 2]) -> Obstacle {
     let friction_of = FrictionOf::default();
     Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction, friction_of }
 }

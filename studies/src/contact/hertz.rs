@@ -4,14 +4,14 @@
 //! The half-space is a block of linear bricks that become larger with the distance from the contact. It is brought to rest by taking a part
 //! of its velocities away.
 
-use super::bodies::block;
+use super::bodies::{block, obstacle};
 use super::{Measured, Trial};
-use crate::material::Forces;
+use crate::material::hold;
 use crate::models::Alike;
 use glam::DVec3;
 use localshape::sim::{
-    Body, BodyContact, Contacts, Ease, Grip, Integrator, Key, Material, Motion, Obstacle, Offset, Shape, State,
-    Stepping, Surroundings, World,
+    Body, BodyContact, Contacts, Ease, Integrator, Key, Material, Motion, Obstacle, Offset, Shape, State, Stepping,
+    Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -60,33 +60,27 @@ fn pressed(cells: u32) -> Vec<Measured> {
     let holding = DEEP.iter().enumerate().map(|(stage, &deep)| (time(stage, 1.0), deep));
     let mut moves: Vec<_> = [(0.0, 0.0)].into_iter().chain(keys).chain(holding).collect();
     moves.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let ball = Obstacle {
-        shape: Shape::Sphere { centre: DVec3::Y * (RADIUS + thin), radius: RADIUS },
-        motion: Motion::Keys { keys: moves.into_iter().map(key).collect(), ease: Ease::Smooth, repeat: false },
-        pivot: DVec3::ZERO,
-        restitution: 0.0,
-        friction: 0.0,
-        friction_of: Default::default(),
-    };
-    let held: Vec<u32> = (0..body.len() as u32).filter(|&node| body.rest()[node as usize].y < -0.999 * WIDE).collect();
+    let shape = Shape::Sphere { centre: DVec3::Y * (RADIUS + thin), radius: RADIUS };
+    let motion = Motion::Keys { keys: moves.into_iter().map(key).collect(), ease: Ease::Smooth, repeat: false };
+    let ball = Obstacle { motion, ..obstacle(shape, [0.0; 2]) };
+    let held: Vec<_> = (0..body.len()).filter(|&node| body.rest()[node].y < -0.999 * WIDE).collect();
     let around = Surroundings {
         obstacles: vec![ball],
         contacts: Some(Contacts {
             bodies: vec![BodyContact { thickness: Some(thin), itself: false }],
             ..Contacts::default()
         }),
-        grips: vec![Grip { nodes: held.clone(), from: 0.0, until: f64::INFINITY, motion: Motion::Still }],
+        grips: vec![hold(&held)],
         ..Surroundings::default()
     };
     let stepping = Stepping::new(Integrator::SemiImplicitEuler, step);
     let mut world = World::new(&body, State::at_rest(body.rest().to_vec()), model.as_ref(), around, stepping);
-    let mut forces = Forces::new(&body, model.as_ref(), body.rest());
     let measured: Vec<_> = DEEP
         .iter()
         .map(|_| {
             rest(&mut world, cells);
-            let all = forces.at(&world.state().position);
-            -held.iter().map(|&node| all[node as usize].y).sum::<f64>()
+            let all = world.forces();
+            -held.iter().map(|&node| all[node].y).sum::<f64>()
         })
         .collect();
     let wanted = |deep: f64| 4.0 / 3.0 * YOUNG * RADIUS.sqrt() * libm::pow(deep, 1.5);

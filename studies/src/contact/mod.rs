@@ -12,6 +12,8 @@ mod shapes;
 mod slopes;
 mod solids;
 
+pub(crate) use bodies::{lattice, obstacle};
+
 use crate::folder::Notes;
 use crate::page::{Contents, Line, Page, Plot};
 use crate::study::{Findings, Study, Watch, each};

@@ -5,8 +5,7 @@
 //! (−13.4, 53.4, −23.5) from (29.29, 70.71, 0), is quoted by the tests of `OpenFAST` (`bd_curved_beam` of BeamDyn) and by the documentation of Kynema.
 
 use super::Case;
-use super::rod::Rod;
-use crate::material::{Bar, Model, balance};
+use crate::material::{Bar, Model, Rod, balance};
 use glam::DVec3;
 use localshape::sim::{Body, Material};
 use std::f64::consts::FRAC_PI_4;
@@ -52,7 +51,7 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
 
 /// The end of a rod.
 pub(super) fn end() -> DVec3 {
-    let rod = Rod { length: RADIUS * FRAC_PI_4, curvature: DVec3::NEG_Y / RADIUS, material: MATERIAL };
+    let rod = Rod::square(RADIUS * FRAC_PI_4, DVec3::NEG_Y / RADIUS, MATERIAL);
     let DVec3 { x, y, z } = rod.dead(DVec3::Y * LOAD);
     DVec3::new(-x, z, y)
 }

@@ -1,8 +1,7 @@
 //! A cantilever under a force that follows its end.
 
-use super::rod::Rod;
 use super::{Case, at_rest};
-use crate::material::{Bar, Model};
+use crate::material::{Bar, Model, Rod};
 use glam::DVec3;
 use localshape::sim::{Load, Material};
 use std::sync::Arc;
@@ -35,7 +34,7 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
     };
     let follower: Arc<dyn Load> = Arc::new(follows);
     let found = at_rest(&bar.body, made.as_ref(), bar.end(0), vec![follower])?;
-    let rod = Rod { length: bar.length, curvature: DVec3::ZERO, material };
+    let rod = Rod::square(bar.length, DVec3::ZERO, material);
     // The rod is one wide.
     Some(rod.followed(DVec3::X * (load / bar.section[0])).x / bar.tip(&found).x)
 }

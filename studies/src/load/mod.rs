@@ -5,20 +5,16 @@ mod column;
 mod follower;
 mod pull;
 mod ring;
-mod rod;
 mod twist;
 mod weight;
 
 use crate::folder::Notes;
-use crate::material::{MODELS, Model, decimals};
+use crate::material::{MODELS, Model, Parts, decimals, hold, rest_of};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::Table;
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
-use localshape::sim::{
-    Body, Crew, Equilibrium, Grip, Integrator, Load, Moment, Motion, Source, State, Stepping, Surroundings, World,
-    equilibrium,
-};
+use localshape::sim::{Body, Integrator, Load, Moment, Source, State, Stepping, Surroundings, World};
 use std::sync::Arc;
 
 /// The study: each case with as many numbers of refinements, but not more than it allows.
@@ -145,9 +141,6 @@ fn order(ratios: &[Option<f64>]) -> Option<f64> {
     falls.then(|| libm::log2(before / after))
 }
 
-/// Bodies, each with its model.
-type Parts<'a> = [(Arc<Body>, &'a dyn ElasticModel)];
-
 /// A body at rest whose nodes are `held`, under some loads.
 fn at_rest(
     body: &Arc<Body>,
@@ -157,13 +150,7 @@ fn at_rest(
 ) -> Option<Vec<DVec3>> {
     let grips = if held.is_empty() { Vec::new() } else { vec![hold(held)] };
     let around = Surroundings { grips, loads, ..Surroundings::default() };
-    rest_of(&[(Arc::clone(body), model)], body.rest().to_vec(), &around)
-}
-
-/// Where bodies are at rest, from a start (m).
-fn rest_of(parts: &Parts<'_>, start: Vec<DVec3>, around: &Surroundings) -> Option<Vec<DVec3>> {
-    let found = equilibrium(parts, &State::at_rest(start), around, 1.0, Crew::default());
-    found.ok().map(|Equilibrium { position, .. }| position)
+    rest_of(&[(Arc::clone(body), model)], body.rest().to_vec(), &around, 1.0)
 }
 
 /// The mean force (N) of each obstacle and hold, on one body after the other, over some steps from rest.
@@ -176,12 +163,6 @@ fn reactions(parts: &Parts<'_>, position: Vec<DVec3>, around: Surroundings, step
     world.advance(steps);
     let outside = world.reactions()?.into_iter().filter(|one| !matches!(one.from, Source::Body(_)));
     Some(outside.map(|one| one.force).collect())
-}
-
-/// Nodes that do not move.
-fn hold(nodes: &[usize]) -> Grip {
-    let nodes = nodes.iter().map(|&node| node as u32).collect();
-    Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A bar that is pulled and pressed far.
 
-use super::{Case, hold, reactions, rest_of};
-use crate::material::{Bar, Model};
+use super::{Case, reactions};
+use crate::material::{Bar, Model, hold, rest_of};
 use glam::DVec3;
 use localshape::sim::{Material, Surroundings};
 use std::sync::Arc;
@@ -35,7 +35,7 @@ fn measure(model: &Model, refined: u32, stretch: f64) -> Option<f64> {
     ends.iter().copied().flatten().for_each(|&node| start[node] *= DVec3::new(across, across, 1.0));
     let around = Surroundings { grips: ends.map(hold).to_vec(), ..Surroundings::default() };
     let parts = [(Arc::clone(&bar.body), made.as_ref())];
-    let position = rest_of(&parts, start, &around)?;
+    let position = rest_of(&parts, start, &around, 1.0)?;
     let [below, above] = reactions(&parts, position, around, 1)?[..] else { return None };
     let [width, depth] = bar.section;
     Some(0.5 * (above - below).z / (stress * MATERIAL.young * width * depth))

@@ -1,8 +1,7 @@
 //! A square bar that is twisted.
 
-use super::rod::SQUARE;
 use super::{Case, at_rest};
-use crate::material::{Bar, Model};
+use crate::material::{Bar, Model, SQUARE};
 use glam::DVec3;
 use localshape::sim::{Course, Loading, Material};
 use std::sync::Arc;

@@ -1,9 +1,10 @@
 //! Bodies that load the ground, and one that hangs.
 
-use super::{Case, hold, reactions, rest_of};
-use crate::material::{Bar, Model};
+use super::{Case, reactions};
+use crate::contact::obstacle;
+use crate::material::{Bar, Model, hold, rest_of};
 use glam::DVec3;
-use localshape::sim::{Body, Contacts, FrictionOf, Material, Motion, Obstacle, Shape, Surroundings};
+use localshape::sim::{Body, Contacts, Material, Shape, Surroundings};
 use std::sync::Arc;
 
 const MATERIAL: Material = Material { young: 2e5, poisson: 0.0 };
@@ -35,19 +36,12 @@ fn stack(model: &Model, refined: u32) -> Option<f64> {
     let low = body.rest().iter().fold(f64::INFINITY, |low, at| low.min(at.y));
     let lift = |at: usize| DVec3::Y * (GAP - low + at as f64 * (SIDE + GAP));
     let place = |at: usize| body.rest().iter().map(move |&rest| rest + lift(at));
-    let ground = Obstacle {
-        shape: Shape::Floor { normal: DVec3::Y, height: 0.0 },
-        motion: Motion::Still,
-        pivot: DVec3::ZERO,
-        restitution: 0.0,
-        friction: 0.3,
-        friction_of: FrictionOf::Path,
-    };
+    let ground = obstacle(Shape::Floor { normal: DVec3::Y, height: 0.0 }, [0.0, 0.3]);
     let contacts = Some(Contacts { friction: 0.3, ..Contacts::default() });
     let gravity = DVec3::NEG_Y * GRAVITY;
     let around = Surroundings { gravity, obstacles: vec![ground], contacts, ..Surroundings::default() };
     let parts = vec![(Arc::clone(&body), made.as_ref()); COUNT];
-    let position = rest_of(&parts, (0..COUNT).flat_map(place).collect(), &around)?;
+    let position = rest_of(&parts, (0..COUNT).flat_map(place).collect(), &around, 1.0)?;
     let force: DVec3 = reactions(&parts, position, around, 100)?.into_iter().sum();
     Some(force.y / (COUNT as f64 * weight(&body)))
 }
@@ -61,7 +55,7 @@ fn scale(model: &Model, refined: u32) -> Option<f64> {
     let made = model.on(&body, MATERIAL, SIDE / f64::from(1 << refined))?;
     let around = Surroundings { gravity: DVec3::Z * GRAVITY, grips: vec![hold(bar.end(0))], ..Surroundings::default() };
     let parts = [(Arc::clone(&body), made.as_ref())];
-    let position = rest_of(&parts, body.rest().to_vec(), &around)?;
+    let position = rest_of(&parts, body.rest().to_vec(), &around, 1.0)?;
     let force: DVec3 = reactions(&parts, position, around, 1)?.into_iter().sum();
     Some(-force.z / weight(&body))
 }

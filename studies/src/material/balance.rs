@@ -1,12 +1,12 @@
-//! Bodies in balance with a load: by Newton's method, or by the steps of a model that steps itself.
+//! Bodies in balance with a load: slender ones by Newton's method, and any by the search of the simulation.
 
 use glam::DVec3;
 use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch};
-use localshape::sim::{Body, Dimension, Nodes};
+use localshape::sim::{Body, Crew, Dimension, Equilibrium, Grip, Motion, Nodes, State, Surroundings, equilibrium};
 use std::sync::Arc;
 
 /// The forces of a model on a body that does not move, with the memory that goes with them.
-pub(crate) struct Forces {
+pub(super) struct Forces {
     forces: Box<dyn ForceModel>,
     memory: Vec<f64>,
     next: Vec<f64>,
@@ -15,14 +15,14 @@ pub(crate) struct Forces {
 }
 
 impl Forces {
-    pub(crate) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &[DVec3]) -> Self {
+    pub(super) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &[DVec3]) -> Self {
         let memory = model.start(body, start);
         let (next, still) = (memory.clone(), vec![DVec3::ZERO; body.len()]);
         Self { forces: model.prepare(body), memory, next, scratch: Scratch::default(), still }
     }
 
     /// The forces on nodes at these places (N).
-    pub(crate) fn at(&mut self, position: &[DVec3]) -> Vec<DVec3> {
+    fn at(&mut self, position: &[DVec3]) -> Vec<DVec3> {
         let mut forces = vec![DVec3::ZERO; position.len()];
         let at = Nodes { position, velocity: &self.still };
         self.forces.add_forces(at, &self.memory, &mut self.next, &mut self.scratch, &mut forces);
@@ -126,53 +126,20 @@ pub(crate) fn balance(
     None
 }
 
-/// The places (m) at which a model that steps itself is at rest under a load (N) on each node, in steps (s), from a start nearby that is not
-/// the rest shape; `None` if it does not come to rest, or exerts forces instead.
-///
-/// Velocities are damped by twice the frequency of the slowest mode, which Rayleigh's quotient of the start gives. At rest there are none.
-pub(super) fn settle(
-    body: &Arc<Body>,
-    model: &dyn ElasticModel,
-    load: &[DVec3],
-    held: &[[bool; 3]],
-    start: &[DVec3],
-    step: f64,
-) -> Option<Vec<DVec3>> {
-    /// The last change in the time in which damping takes a velocity to `1/e`, relative to the greatest displacement.
-    const LAST: f64 = 1e-5;
-    let projection = model.projection(body)?;
-    let shift: Vec<_> = start.iter().zip(body.rest()).map(|(start, rest)| *start - *rest).collect();
-    let work: f64 = shift.iter().zip(load).map(|(shift, load)| shift.dot(*load)).sum();
-    let inertia: f64 = shift.iter().zip(body.mass()).map(|(shift, mass)| mass * shift.length_squared()).sum();
-    let rate = 2.0 * libm::sqrt(work / inertia);
-    let far = shift.iter().map(|shift| shift.length()).fold(0.0, f64::max);
-    let light: Vec<_> =
-        body.mass().iter().zip(held).map(|(mass, held)| if held[0] { 0.0 } else { 1.0 / mass }).collect();
-    let (mut position, mut velocity) = (start.to_vec(), vec![DVec3::ZERO; body.len()]);
-    let mut memory = model.start(body, start);
-    let mut next = memory.clone();
-    for _ in 0..MOST {
-        let before = position.clone();
-        for _ in 0..libm::ceil(1.0 / (rate * step)) as u64 {
-            let from = position.clone();
-            for (node, velocity) in velocity.iter_mut().enumerate() {
-                *velocity = *velocity / (1.0 + rate * step) + load[node] * (light[node] * step);
-                position[node] += *velocity * step;
-            }
-            projection.project(&mut position, &light, step, &memory, &mut next);
-            std::mem::swap(&mut memory, &mut next);
-            velocity
-                .iter_mut()
-                .zip(&position)
-                .zip(&from)
-                .for_each(|((velocity, to), from)| *velocity = (*to - *from) / step);
-        }
-        let most = position.iter().zip(&before).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
-        if most < LAST * far {
-            return Some(position);
-        }
-    }
-    None
+/// Nodes that do not move.
+pub(crate) fn hold(nodes: &[usize]) -> Grip {
+    let nodes = nodes.iter().map(|&node| node as u32).collect();
+    Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still }
+}
+
+/// Bodies, each with its model.
+pub(crate) type Parts<'a> = [(Arc<Body>, &'a dyn ElasticModel)];
+
+/// Where bodies are at rest, from a start (m), by the search of the simulation: with contact, and with models that step themselves, in steps (s).
+/// `None` if they do not come to rest.
+pub(crate) fn rest_of(parts: &Parts<'_>, start: Vec<DVec3>, around: &Surroundings, step: f64) -> Option<Vec<DVec3>> {
+    let found = equilibrium(parts, &State::at_rest(start), around, step, Crew::default());
+    found.ok().map(|Equilibrium { position, .. }| position)
 }
 
 /// Solves a symmetric system by `L D Lᵀ`; `rows[i][d]` is its entry in row `i` and column `i − d`.

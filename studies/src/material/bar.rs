@@ -1,10 +1,10 @@
 //! Bars along z that are held at one end and loaded at the other.
 
-use super::balance::{balance, settle};
+use super::balance::{balance, hold, rest_of};
 use super::{Elements, Model, mean_shift};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
-use localshape::sim::{Body, Material};
+use localshape::sim::{Body, Course, Load, Loading, Material, Surroundings};
 use std::sync::Arc;
 
 /// A bar.
@@ -62,7 +62,10 @@ impl Bar {
         start: &[DVec3],
         step: f64,
     ) -> Option<Vec<DVec3>> {
-        settle(&self.body, model, &self.load(DVec3::X * load), &self.clamped(), start, step)
+        let load = Loading::dead((0..self.body.len() as u32).collect(), self.load(DVec3::X * load), Course::ALWAYS);
+        let (grips, loads) = (vec![hold(&self.ends[0])], vec![Arc::new(load) as Arc<dyn Load>]);
+        let around = Surroundings { grips, loads, ..Surroundings::default() };
+        rest_of(&[(Arc::clone(&self.body), model)], start.to_vec(), &around, step)
     }
 
     /// Which coordinates of each node do not change: those of its held end.

@@ -9,14 +9,16 @@ mod bar;
 mod beam;
 mod cook;
 mod patch;
+mod rod;
 mod theory;
 mod time;
 
-pub(crate) use balance::{Forces, balance};
+pub(crate) use balance::{Parts, balance, hold, rest_of};
 pub(crate) use bar::Bar;
 pub(crate) use beam::Beam;
 pub(crate) use cook::Cook;
 pub(crate) use patch::Patch;
+pub(crate) use rod::{Rod, SQUARE};
 pub(crate) use time::Time;
 
 use crate::models::{self, Alike};

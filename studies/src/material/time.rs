@@ -1,5 +1,6 @@
 //! Error against time: one beam with every model and resolution, the error of its end at rest, and the time of a simulated second.
 
+use super::balance::hold;
 use super::bar::Bar;
 use super::{Elements, MENDED, MODELS, Model, STEPPING};
 use crate::folder::Notes;
@@ -11,7 +12,7 @@ use crate::turns::{kind_of_time, machine, seconds, take_turns};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::stability::{Restraint, Stability};
-use localshape::sim::{Grip, Integrator, Material, Motion, State, Stepping, Surroundings, World};
+use localshape::sim::{Grip, Integrator, Material, State, Stepping, Surroundings, World};
 use std::sync::Arc;
 
 /// The study.
@@ -163,8 +164,7 @@ impl Cantilever {
         for part in 1..=PARTS {
             position = bar.bent(made.as_ref(), load * f64::from(part) / f64::from(PARTS), &position)?;
         }
-        let nodes = bar.end(0).iter().map(|&node| node as u32).collect();
-        let held = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still };
+        let held = hold(bar.end(0));
         let restraint =
             Restraint { grips: std::slice::from_ref(&held), duration: f64::INFINITY, ..Restraint::default() };
         let stability = Stability::of(&bar.body, made.as_ref(), INTEGRATOR, restraint);

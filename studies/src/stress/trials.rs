@@ -1,6 +1,7 @@
 //! The trials.
 
 use super::Promise;
+use crate::contact::{self, obstacle};
 use crate::random::Random;
 use glam::{DMat3, DQuat, DVec3};
 use localshape::sim::{
@@ -126,12 +127,9 @@ fn pressed() -> Trial {
     // Above the middle of the body, where the gap has its nominal width.
     let point = DVec3::new(0.5 * height, height, 0.5 * height);
     let plate = Obstacle {
-        shape: Shape::Plate { point, normal },
         motion: Motion::Keys { keys, ease: Ease::Smooth, repeat: false },
-        pivot: DVec3::ZERO,
-        restitution: 0.0,
-        friction: 0.5,
         friction_of: FrictionOf::Velocity,
+        ..obstacle(Shape::Plate { point, normal }, [0.0, 0.5])
     };
     let elastic = Elastic { over_mass: 1e5, ..USUAL };
     let name = "to a tenth of the height".to_owned();
@@ -265,21 +263,14 @@ fn long(steps: u64) -> [Trial; 2] {
 
 /// `cells`³ cubes of a side (m), with nodes of a mass (kg).
 fn lattice(cells: u32, side: f64, mass: f64) -> Body {
-    let n = cells + 1;
-    let grid = |n: u32| (0..n).flat_map(move |z| (0..n).flat_map(move |y| (0..n).map(move |x| [x, y, z])));
-    let rest: Vec<_> = grid(n).map(|at| DVec3::from_array(at.map(f64::from)) * side).collect();
-    let node = |[x, y, z]: [u32; 3]| x + n * (y + n * z);
-    let corner = |[x, y, z]: [u32; 3], bit: u32| node([x + (bit & 1), y + (bit >> 1 & 1), z + (bit >> 2)]);
-    let mut elements = IndexLists::default();
-    grid(cells).for_each(|at| elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|bit| corner(at, bit))));
+    let (rest, elements) = contact::lattice([cells; 3], |at| at * side);
     let mass = vec![mass; rest.len()];
     Body::builder(rest).elements(elements).masses(mass).build().expect("a body")
 }
 
 fn floor(height: f64, restitution: f64, friction: f64) -> Obstacle {
-    let shape = Shape::Floor { normal: DVec3::Y, height };
-    let friction_of = FrictionOf::Velocity;
-    Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction, friction_of }
+    let floor = obstacle(Shape::Floor { normal: DVec3::Y, height }, [restitution, friction]);
+    Obstacle { friction_of: FrictionOf::Velocity, ..floor }
 }
 
 /// The most elements that share a node.

@@ -1,7 +1,7 @@
 //! Bodies at rest under loads, with few cells.
 
 use super::*;
-use crate::material::Elements;
+use crate::material::{Elements, Rod};
 use crate::reading::{documented, markdown_rows};
 use localshape::sim::Material;
 
@@ -69,7 +69,7 @@ fn rods_are_near_the_literature() {
         assert!(bend::end().distance(printed) < 0.01 * printed.length(), "{}", bend::end());
     }
     let material = Material { young: 12.0, poisson: 0.0 };
-    let rod = rod::Rod { length: 1000.0, curvature: DVec3::ZERO, material };
+    let rod = Rod::square(1000.0, DVec3::ZERO, material);
     // P L²/EI = 10.
     let end = rod.dead(DVec3::X * 1e-5) / rod.length;
     assert!(end.distance(DVec3::new(0.81061, 0.0, 1.0 - 0.55500)) < 2e-5, "{end}");

@@ -7,25 +7,35 @@ use localshape::sim::Material;
 
 /// The torsion constant of a square over the fourth power of its side: A. Saint-Venant, 1855; S. Timoshenko, J. Goodier, Theory of Elasticity
 /// (1951), article 94.
-pub(super) const SQUARE: f64 = 0.140_577;
+pub(crate) const SQUARE: f64 = 0.140_577;
 
-/// A rod with a square section of side 1 that is clamped at one end.
+/// A rod that is clamped at one end. Vectors are in the axes of a section, of which the third one is along the rod.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rod {
-    pub(super) length: f64,
-    /// The curvature at rest, in the axes of a section, of which the third one is along the rod.
-    pub(super) curvature: DVec3,
-    pub(super) material: Material,
+pub(crate) struct Rod {
+    pub(crate) length: f64,
+    /// The curvature at rest (1/m).
+    pub(crate) curvature: DVec3,
+    /// The stiffness against bending and twist (N m²), and against shear and stretch (N).
+    pub(super) turning: DVec3,
+    pub(super) pulling: DVec3,
 }
 
 impl Rod {
+    /// A rod of a material with a square section of side 1.
+    pub(crate) fn square(length: f64, curvature: DVec3, material: Material) -> Self {
+        let (young, shear) = (material.young, material.shear());
+        let turning = DVec3::new(young / 12.0, young / 12.0, SQUARE * shear);
+        let pulling = DVec3::new(5.0 / 6.0 * shear, 5.0 / 6.0 * shear, young);
+        Self { length, curvature, turning, pulling }
+    }
+
     /// The place of the free end under a force (N) that turns with it, in the axes of the clamped end and from there (m).
-    pub(super) fn followed(&self, force: DVec3) -> DVec3 {
+    pub(crate) fn followed(&self, force: DVec3) -> DVec3 {
         self.end(force).0
     }
 
     /// The same under a force that keeps its direction.
-    pub(super) fn dead(&self, force: DVec3) -> DVec3 {
+    pub(crate) fn dead(&self, force: DVec3) -> DVec3 {
         const PARTS: u32 = 8;
         let mut inside = DVec3::ZERO;
         for force in (1..=PARTS).map(|part| force * f64::from(part) / f64::from(PARTS)) {
@@ -45,12 +55,9 @@ impl Rod {
     fn end(&self, force: DVec3) -> (DVec3, DMat3) {
         const STEPS: u32 = 400;
         let step = self.length / f64::from(STEPS);
-        let (young, shear) = (self.material.young, self.material.shear());
-        let turning = DVec3::new(young / 12.0, young / 12.0, SQUARE * shear);
-        let pulling = DVec3::new(5.0 / 6.0 * shear, 5.0 / 6.0 * shear, young);
         let rate = |(place, axes): (DVec3, DMat3)| {
-            let turn = axes * (axes.transpose() * force.cross(place) / turning + self.curvature);
-            let along = axes * (DVec3::Z + axes.transpose() * force / pulling);
+            let turn = axes * (axes.transpose() * force.cross(place) / self.turning + self.curvature);
+            let along = axes * (DVec3::Z + axes.transpose() * force / self.pulling);
             let turned = |axis: DVec3| axis.cross(turn);
             (-along, DMat3::from_cols(turned(axes.x_axis), turned(axes.y_axis), turned(axes.z_axis)))
         };
