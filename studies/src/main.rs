@@ -203,18 +203,14 @@ impl OfScene {
 impl Name {
     /// The study, with its number of threads and the arguments that repeat it.
     fn task(self) -> Result<Task, Failure> {
-        let task = |study: Box<dyn Study>, threads: usize, arguments: Vec<String>| Task { study, threads, arguments };
         Ok(match self {
-            Self::Rotation => task(Box::new(Rotation::usual()), 1, Vec::new()),
+            Self::Rotation => Task::new("rotation", Rotation::usual(), 1, Vec::new()),
             Self::WorkPrecision { only, of } => {
                 let effort = if of.full { Effort::FULL } else { Effort::USUAL };
                 let subjects =
                     of.load()?.map_or_else(|| Ok(work_precision::usual(&of.model)), |scene| subjects(&scene, &only))?;
-                task(
-                    Box::new(WorkPrecision { effort, subjects }),
-                    1,
-                    [of.arguments(), repeated("--only", &only)].concat(),
-                )
+                let arguments = [of.arguments(), repeated("--only", &only)].concat();
+                Task::new("work-precision", WorkPrecision { effort, subjects }, 1, arguments)
             }
             Self::Stability { of, threads } => {
                 let study = Stability {
@@ -227,25 +223,26 @@ impl Name {
                         study.scene.title
                     )));
                 }
-                task(Box::new(study), threads.count(), of.arguments())
+                Task::new("stability", study, threads.count(), of.arguments())
             }
             Self::Stress { model, threads } => {
                 let study = Stress { steps: stress::STEPS, models: stress::NamedModel::compared(&model) };
-                task(Box::new(study), threads.count(), repeated("--model", &model))
+                Task::new("stress", study, threads.count(), repeated("--model", &model))
             }
-            Self::Beam { threads } => task(Box::new(Beam::usual()), threads.count(), Vec::new()),
-            Self::Patch { threads } => task(Box::new(Patch::usual()), threads.count(), Vec::new()),
-            Self::Cook { threads } => task(Box::new(Cook::usual()), threads.count(), Vec::new()),
-            Self::Load { threads } => task(Box::new(Loads::USUAL), threads.count(), Vec::new()),
-            Self::Contact { threads } => task(Box::new(Contact::usual()), threads.count(), Vec::new()),
-            Self::BeamTime => task(Box::new(Time::usual()), 1, Vec::new()),
+            Self::Beam { threads } => Task::new("beam", Beam::usual(), threads.count(), Vec::new()),
+            Self::Patch { threads } => Task::new("patch", Patch::usual(), threads.count(), Vec::new()),
+            Self::Cook { threads } => Task::new("cook", Cook::usual(), threads.count(), Vec::new()),
+            Self::Load { threads } => Task::new("load", Loads::USUAL, threads.count(), Vec::new()),
+            Self::Contact { threads } => Task::new("contact", Contact::usual(), threads.count(), Vec::new()),
+            Self::BeamTime => Task::new("beam-time", Time::usual(), 1, Vec::new()),
             Self::Table1 { orientations, threads } => {
                 let arguments = repeated("--orientations", &[orientations.to_string()]);
-                task(Box::new(Table1::new(orientations)), threads.count(), arguments)
+                Task::new("table1", Table1::new(orientations), threads.count(), arguments)
             }
             Self::Ratio { threads } => {
                 let given = Some(threads.to_string()).filter(|_| threads != 1);
-                task(Box::new(Ratio::new(threads.into())), threads.into(), repeated("--threads", given.as_slice()))
+                let arguments = repeated("--threads", given.as_slice());
+                Task::new("ratio", Ratio::new(threads.into()), threads.into(), arguments)
             }
         })
     }

@@ -7,7 +7,6 @@
 //! is measured, which does not include other processes; with more threads, or if the system does not provide it, wall
 //! time.
 
-use crate::folder::Notes;
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch, built_in};
 use crate::table::{Table, figure, typed};
@@ -47,15 +46,11 @@ impl Ratio {
 }
 
 impl Study for Ratio {
-    fn name(&self) -> &'static str {
-        "ratio"
-    }
-
     fn work(&self) -> u64 {
         self.sides.len() as u64 * u64::from(self.rounds) * (1 + SPRINGS.len() as u64)
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let ratios = measure(self, watch)?;
         Some(Findings { text: ratios.text(), tables: vec![("ratio", ratios.table())], page: None })
     }

@@ -1,6 +1,6 @@
 //! The structure of all studies: a name, a measurement, and findings as text, tables and pages.
 
-use crate::folder::{Folder, Notes};
+use crate::folder::Folder;
 use crate::page::Page;
 use crate::table::Table;
 use clap::{Args, ValueHint};
@@ -17,28 +17,27 @@ pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
 /// A measurement that is ready to be made.
 pub(crate) trait Study: Send + Sync {
-    /// Its name, and that of its folder and files.
-    fn name(&self) -> &'static str;
-
-    /// The digest of the study's parameters besides the command. Notes of an interrupted study depend on it.
-    fn digest(&self) -> &str {
-        ""
-    }
-
     /// The amount of work: the sum of the amounts that [`Self::measure`] reports.
     fn work(&self) -> u64;
 
-    /// Measures, with the caller's thread pool (rayon); `None` if `watch` stops it. Notes are kept until the study is
-    /// done.
-    fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings>;
+    /// Measures, with the caller's thread pool (rayon); `None` if `watch` stops it.
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings>;
 }
 
 /// A study, and how it is made.
 pub(crate) struct Task {
-    pub(crate) study: Box<dyn Study>,
-    pub(crate) threads: usize,
+    /// The name of the study, and of its folder and files.
+    name: &'static str,
+    study: Box<dyn Study>,
+    threads: usize,
     /// The arguments of the command that repeats it.
-    pub(crate) arguments: Vec<String>,
+    arguments: Vec<String>,
+}
+
+impl Task {
+    pub(crate) fn new(name: &'static str, study: impl Study + 'static, threads: usize, arguments: Vec<String>) -> Self {
+        Self { name, study: Box::new(study), threads, arguments }
+    }
 }
 
 /// The findings of a study.
@@ -87,17 +86,15 @@ pub(crate) struct Options {
 }
 
 /// Makes a study: measures, writes its files, and prints its text.
-pub(crate) fn make(Task { study, threads, arguments }: &Task, options: &Options) -> Result<Status, Failure> {
-    let name = study.name();
+pub(crate) fn make(task: &Task, options: &Options) -> Result<Status, Failure> {
+    let Task { name, arguments, .. } = task;
     let command = command_line(&[&["localshape-study", name].map(str::to_owned), &arguments[..]].concat());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     listen();
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    let notes = folder.notes(study.digest());
-    let Some(found) = measured(study.as_ref(), *threads, options.quiet, &notes)? else {
+    let Some(found) = measured(task, options.quiet)? else {
         if !options.quiet && !options.json {
-            let goes_on = if notes.are_kept() { "; the same command continues from here" } else { "" };
-            print(&format!("interrupted; {name} was not made{goes_on}\n"))?;
+            print(&format!("interrupted; {name} was not made\n"))?;
         }
         return Ok(Status::Interrupted);
     };
@@ -109,7 +106,6 @@ pub(crate) fn make(Task { study, threads, arguments }: &Task, options: &Options)
         files.extend([(format!("{name}.svg"), svg), (format!("{name}.png"), png)]);
     }
     folder.write(&files)?;
-    notes.remove();
     let names: Vec<_> = files.iter().map(|(name, _)| name.as_str()).collect();
     if options.json {
         let tables: Map<String, Value> =
@@ -123,17 +119,17 @@ pub(crate) fn make(Task { study, threads, arguments }: &Task, options: &Options)
 }
 
 /// Measures with a number of threads, below a bar of progress in a terminal; `None` after an interruption.
-fn measured(study: &dyn Study, threads: usize, is_quiet: bool, notes: &Notes) -> Result<Option<Findings>, Failure> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+fn measured(Task { name, study, threads, .. }: &Task, is_quiet: bool) -> Result<Option<Findings>, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(*threads).build();
     let pool = pool.map_err(|error| Failure::files(format!("cannot start threads: {error}")))?;
     let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {eta} left").expect("a template of known keys");
     let target = if is_quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(Some(study.work()), target).with_style(style).with_prefix(study.name());
+    let bar = ProgressBar::with_draw_target(Some(study.work()), target).with_style(style).with_prefix(*name);
     let watch = |more| {
         bar.inc(more);
         !requested()
     };
-    let found = pool.install(|| study.measure(&watch, notes));
+    let found = pool.install(|| study.measure(&watch));
     bar.finish_and_clear();
     Ok(found)
 }

@@ -177,11 +177,6 @@ fn maps_the_stability_of_a_scene() {
     place.good(&format!("{command} --threads 1"));
     assert_eq!(place.read("maps/stability.csv"), table, "for any number of threads");
     place.bad(&format!("{command} --full"), 2, &["maps", "stability small.toml"]);
-    // The notes of another interrupted command are not lost.
-    let notes = "<!-- localshape-study stability other.toml -->\n0.1.0 ab\n";
-    place.write("begun/stability.unfinished", notes);
-    place.bad("stability small.toml -o begun", 2, &["`localshape-study stability other.toml`", "--overwrite"]);
-    assert_eq!(place.read("begun/stability.unfinished"), notes);
 }
 
 /// The command in the Markdown file can be pasted into a shell.

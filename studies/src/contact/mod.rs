@@ -14,7 +14,6 @@ mod solids;
 
 pub(crate) use bodies::{lattice, obstacle};
 
-use crate::folder::Notes;
 use crate::page::{Contents, Line, Page, Plot};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table, figure};
@@ -57,15 +56,11 @@ impl Contact {
 }
 
 impl Study for Contact {
-    fn name(&self) -> &'static str {
-        "contact"
-    }
-
     fn work(&self) -> u64 {
         self.trials().len() as u64
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         let tables = vec![("contact", results.table())];
         Some(Findings { text: results.text(), tables, page: Some(results.page()) })

@@ -8,7 +8,6 @@ mod ring;
 mod twist;
 mod weight;
 
-use crate::folder::Notes;
 use crate::material::{MODELS, Model, Parts, decimals, hold, rest_of};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::Table;
@@ -60,16 +59,12 @@ impl Loads {
 }
 
 impl Study for Loads {
-    fn name(&self) -> &'static str {
-        "load"
-    }
-
     fn work(&self) -> u64 {
         let of = |case: &Case| case.models().count() as u64 * u64::from(case.levels.min(self.most));
         CASES.iter().map(of).sum()
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(*self, watch)?;
         Some(Findings { text: text(*self, &results), tables: vec![("load", table(&results))], page: None })
     }

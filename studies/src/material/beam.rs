@@ -5,7 +5,6 @@ use super::balance::Forces;
 use super::bar::Bar;
 use super::theory::{elastica, timoshenko};
 use super::{Elements, MENDED, MODELS, Model, decimals};
-use crate::folder::Notes;
 use crate::page::{Contents, Page, Plot};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table};
@@ -57,15 +56,11 @@ impl Beam {
 }
 
 impl Study for Beam {
-    fn name(&self) -> &'static str {
-        "beam"
-    }
-
     fn work(&self) -> u64 {
         (Self::kinds().count() * self.across.len() + self.bent.len()) as u64 + 1
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         let tables = vec![
             ("beam", results.table()),

@@ -6,7 +6,6 @@
 
 use super::balance::balance;
 use super::{Elements, MODELS, Model, decimals};
-use crate::folder::Notes;
 use crate::page::{Contents, Page, Plot};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table};
@@ -41,15 +40,11 @@ impl Cook {
 }
 
 impl Study for Cook {
-    fn name(&self) -> &'static str {
-        "cook"
-    }
-
     fn work(&self) -> u64 {
         (Self::models().count() * self.cells.len()) as u64
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         let (text, tables) = (results.text(), vec![("cook", results.table())]);
         Some(Findings { text, tables, page: Some(results.page()) })

@@ -6,7 +6,6 @@
 
 use super::balance::{Forces, balance};
 use super::{MODELS, Model};
-use crate::folder::Notes;
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table, or_dash};
 use glam::{DMat3, DVec3};
@@ -38,15 +37,11 @@ impl Patch {
 }
 
 impl Study for Patch {
-    fn name(&self) -> &'static str {
-        "patch"
-    }
-
     fn work(&self) -> u64 {
         (MODELS.len() * POISSON.len() * IRREGULAR.len()) as u64
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         Some(Findings { text: results.text(), tables: vec![("patch", results.table())], page: None })
     }

@@ -3,7 +3,6 @@
 use super::balance::hold;
 use super::bar::Bar;
 use super::{Elements, MENDED, MODELS, Model, STEPPING};
-use crate::folder::Notes;
 use crate::page::{Contents, Page, Plot};
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch};
@@ -54,15 +53,11 @@ impl Time {
 }
 
 impl Study for Time {
-    fn name(&self) -> &'static str {
-        "beam-time"
-    }
-
     fn work(&self) -> u64 {
         (Self::models().count() * self.across.len()) as u64 * u64::from(1 + self.rounds) + 2
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         let (text, tables) = (results.text(), vec![("beam-time", results.table())]);
         Some(Findings { text, tables, page: Some(results.page()) })

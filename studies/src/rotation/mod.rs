@@ -18,7 +18,6 @@ mod solver;
 mod solver_tests;
 mod text;
 
-use crate::folder::Notes;
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch};
 use crate::turns::{seconds, take_turns};
@@ -65,15 +64,11 @@ impl Rotation {
 }
 
 impl Study for Rotation {
-    fn name(&self) -> &'static str {
-        "rotation"
-    }
-
     fn work(&self) -> u64 {
         self.kinds().len() as u64 * u64::from(self.rounds) * solver::all().len() as u64
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         let (text, tables) = (results.text(), vec![("rotation", results.table())]);
         Some(Findings { text, tables, page: Some(results.page()) })

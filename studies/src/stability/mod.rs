@@ -8,7 +8,6 @@
 mod page;
 mod text;
 
-use crate::folder::Notes;
 use crate::study::{Findings, Study, Watch, built_in};
 use localshape::Scene;
 use localshape::scene::{Run, description};
@@ -26,22 +25,12 @@ pub(crate) struct Stability {
 }
 
 impl Study for Stability {
-    fn name(&self) -> &'static str {
-        "stability"
-    }
-
-    fn digest(&self) -> &str {
-        &self.scene.digest
-    }
-
     fn work(&self) -> u64 {
         self.protocol.work(&self.scene)
     }
 
-    fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings> {
-        let known = |cell: &MapCell| Outcome::read(notes.known(&cell.key())?);
-        let done = |cell: &MapCell| notes.add(&cell.key(), &cell.outcome.note());
-        let results = measure(self.protocol.clone(), &self.scene, &known, &done, watch)?;
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
+        let results = measure(self.protocol.clone(), &self.scene, watch)?;
         let (text, tables) = (results.text(), vec![("stability", results.table())]);
         Some(Findings { text, tables, page: Some(results.page()) })
     }
@@ -195,15 +184,8 @@ pub(crate) struct Results {
     pub(crate) cells: Vec<MapCell>,
 }
 
-/// Simulates the cells for which `known` has no outcome with the rayon thread pool of the caller, and calls `done` with each; `None` if
-/// `watch` stops it.
-pub(crate) fn measure(
-    protocol: Protocol,
-    scene: &Scene,
-    known: &(dyn Fn(&MapCell) -> Option<Outcome> + Sync),
-    done: &(dyn Fn(&MapCell) + Sync),
-    watch: &Watch<'_>,
-) -> Option<Results> {
+/// Simulates the cells with the rayon thread pool of the caller; `None` if `watch` stops it.
+pub(crate) fn measure(protocol: Protocol, scene: &Scene, watch: &Watch<'_>) -> Option<Results> {
     let studied = (0..scene.runs.len()).filter(|&run| scene.runs[run].tolerance.is_none());
     let each = |run: usize| protocol.dampings.iter().filter_map(move |&damping| Axes::new(scene, run, damping));
     let axes: Vec<Axes> = studied.flat_map(each).collect();
@@ -224,12 +206,7 @@ pub(crate) fn measure(
         }
     }
     cells.par_iter_mut().with_max_len(1).try_for_each(|cell| {
-        if let Some(found) = known(cell) {
-            cell.outcome = found;
-        } else {
-            cell.outcome = outcome(scene, cell, watch)?;
-            done(cell);
-        }
+        cell.outcome = outcome(scene, cell, watch)?;
         watch(1).then_some(())
     })?;
     Some(Results { protocol, scene: scene.clone(), axes, cells })

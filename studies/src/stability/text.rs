@@ -1,4 +1,4 @@
-//! The results as text and as a table, and the notes of cells.
+//! The results as text and as a table.
 
 use super::{Axes, MapCell, Outcome, Protocol, Results};
 use crate::table::{Table, or_dash, typed};
@@ -20,28 +20,6 @@ impl Outcome {
             Self::TurnedOver(count) => Some(count),
             Self::Diverged => None,
         }
-    }
-
-    /// In a note.
-    pub(super) fn note(self) -> String {
-        self.turned_over().map_or_else(|| "diverged".to_owned(), |count| count.to_string())
-    }
-
-    /// From a note; `None` from anything else.
-    pub(super) fn read(note: &str) -> Option<Self> {
-        match note {
-            "diverged" => Some(Self::Diverged),
-            "0" => Some(Self::Whole),
-            count => Some(Self::TurnedOver(count.parse().ok()?)),
-        }
-    }
-}
-
-impl MapCell {
-    /// The parameters of the cell, which no other cell of the study has.
-    pub(super) fn key(&self) -> String {
-        let Self { run, rate, speed, damping, share, step, .. } = self;
-        format!("{run} {rate:e} {speed:e} {damping:e} {share:e} {step:e}")
     }
 }
 

@@ -6,7 +6,6 @@
 mod text;
 mod trials;
 
-use crate::folder::Notes;
 use crate::models::Alike;
 use crate::study::{Findings, Study, Watch, each};
 use glam::DVec3;
@@ -27,15 +26,11 @@ pub(crate) struct Stress {
 pub(crate) const STEPS: u64 = 1_000_000;
 
 impl Study for Stress {
-    fn name(&self) -> &'static str {
-        "stress"
-    }
-
     fn work(&self) -> u64 {
         (trials(self.steps).len() * self.models.len()) as u64
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self.steps, &self.models, watch)?;
         Some(Findings { text: results.text(), tables: vec![("stress", results.table())], page: None })
     }

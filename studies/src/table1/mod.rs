@@ -10,7 +10,6 @@ mod page;
 mod printed;
 mod text;
 
-use crate::folder::Notes;
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch, built_in, each};
 use glam::{DVec3, DVec4, Vec4Swizzles};
@@ -47,15 +46,11 @@ impl Table1 {
 }
 
 impl Study for Table1 {
-    fn name(&self) -> &'static str {
-        "table1"
-    }
-
     fn work(&self) -> u64 {
         u64::from(self.orientations) * self.cases().iter().map(|case| self.evaluations(case)).sum::<u64>()
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self, watch)?;
         let tables = vec![("table1", results.summary_table()), ("table1-orientations", results.start_table())];
         Some(Findings { text: results.text(), tables, page: Some(results.page()) })

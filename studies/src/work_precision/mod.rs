@@ -15,7 +15,6 @@ mod text;
 
 pub(crate) use scenes::usual;
 
-use crate::folder::Notes;
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch};
 use crate::turns::{seconds, take_turns};
@@ -54,16 +53,12 @@ impl Effort {
 }
 
 impl Study for WorkPrecision {
-    fn name(&self) -> &'static str {
-        "work-precision"
-    }
-
     /// The number of turns if nothing diverges, and one more for each way to advance a run.
     fn work(&self) -> u64 {
         self.subjects.iter().map(|subject| work(self.effort, subject)).sum()
     }
 
-    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
         let results = measure(self.effort, &self.subjects, watch)?;
         let (text, tables) = (results.text(), vec![("work-precision", results.table())]);
         Some(Findings { text, tables, page: Some(results.page()) })

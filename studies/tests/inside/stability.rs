@@ -1,5 +1,4 @@
 use super::*;
-use std::sync::Mutex;
 
 fn small() -> (Protocol, Scene) {
     let text = "
@@ -22,7 +21,7 @@ fn small() -> (Protocol, Scene) {
 #[test]
 fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
     let (protocol, scene) = small();
-    let results = measure(protocol.clone(), &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+    let results = measure(protocol.clone(), &scene, &|_| true).expect("it is never stopped");
     assert_eq!(results.cells.len() as u64, protocol.work(&scene));
     assert!(results.text().ends_with("\nown chooses its own steps and is left out.\n"));
     for cell in results.cells.iter().filter(|cell| cell.run == 0) {
@@ -34,40 +33,10 @@ fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
     assert!(results.cells.iter().all(|cell| cell.run == 0 || cell.outcome != Outcome::Diverged));
 }
 
-/// Known cells are not simulated again, and give equal tables.
-#[test]
-fn goes_on_where_it_was_interrupted() {
-    let (protocol, scene) = small();
-    let made = Mutex::new(Vec::new());
-    let keep = |cell: &MapCell| made.lock().unwrap().push(cell.clone());
-    let left = std::sync::atomic::AtomicI64::new(4);
-    let stop = |more: u64| left.fetch_sub(more as i64, std::sync::atomic::Ordering::Relaxed) > 0;
-    assert!(measure(protocol.clone(), &scene, &|_| None, &keep, &stop).is_none());
-    let made = made.into_inner().unwrap();
-    assert!(!made.is_empty() && (made.len() as u64) < protocol.work(&scene));
-    let again = Mutex::new(0);
-    let known = |cell: &MapCell| made.iter().find(|one| one.key() == cell.key()).map(|one| one.outcome);
-    let resumed = measure(protocol.clone(), &scene, &known, &|_| *again.lock().unwrap() += 1, &|_| true);
-    let whole = measure(protocol.clone(), &scene, &|_| None, &|_| (), &|_| true);
-    assert_eq!(*again.lock().unwrap() + made.len() as u64, protocol.work(&scene));
-    let [resumed, whole] = [resumed, whole].map(|results| results.expect("it is never stopped"));
-    assert_eq!((resumed.axes, resumed.cells), (whole.axes, whole.cells));
-}
-
-#[test]
-fn notes_can_be_read_again() {
-    for outcome in [Outcome::Whole, Outcome::TurnedOver(9), Outcome::Diverged] {
-        assert_eq!(Outcome::read(&outcome.note()), Some(outcome));
-    }
-    for damaged in ["", "-1", "1.5", "diverge", "99999999999999999999999"] {
-        assert_eq!(Outcome::read(damaged), None, "{damaged}");
-    }
-}
-
 #[test]
 fn columns_are_documented() {
     let (protocol, scene) = small();
-    let results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+    let results = measure(protocol, &scene, &|_| true).expect("it is never stopped");
     assert_eq!(results.table().heads, crate::reading::documented("stability.csv"));
     assert_eq!(results.table().rows.len(), results.cells.len());
 }
@@ -76,7 +45,7 @@ fn columns_are_documented() {
 #[test]
 fn the_largest_share_is_below_every_bad_cell() {
     let (protocol, scene) = small();
-    let mut results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+    let mut results = measure(protocol, &scene, &|_| true).expect("it is never stopped");
     let outcomes = [
         // Rows with shares .3, .9 and 1.1, column by column.
         [Outcome::Whole, Outcome::Whole, Outcome::Diverged],
@@ -106,7 +75,7 @@ fn faster_impacts_have_more_gravity() {
         let scene = built_in(&text(gravity), "fall");
         let stiffnesses = vec![1.0, 2.0, 4.0, 8.0];
         let protocol = Protocol { stiffnesses, shares: vec![0.3], speeds: vec![speed], dampings: vec![1.0] };
-        let results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+        let results = measure(protocol, &scene, &|_| true).expect("it is never stopped");
         results.cells.into_iter().map(|cell| cell.outcome).collect::<Vec<_>>()
     };
     let twice = outcomes(5.0, 2.0);
