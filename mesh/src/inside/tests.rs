@@ -80,6 +80,15 @@ fn points_in_faces_are_moved_along_y_before_z() {
     }
 }
 
+/// The same move decides which of two faces counts for a point on the edge between them.
+#[test]
+fn points_on_slanted_edges_are_moved_along_y_before_z() {
+    let mut ridge = cube();
+    ridge.points[3].x = 2.0;
+    // Towards +y the surface rises from the diagonal at x = 1, towards +z it stays level.
+    assert!(Inside::new(&ridge).contains(DVec3::new(1.0, 0.5, 0.5)));
+}
+
 #[test]
 fn open_edges_that_are_divided_are_closed_by_few_triangles() {
     let mut surface = cube();
