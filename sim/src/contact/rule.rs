@@ -90,6 +90,14 @@ pub(super) struct Moved<'a> {
     pub(super) timing: Timing,
 }
 
+/// Whether all further bounces of a pair would be over within some steps, so that it comes to rest now: with a restitution below 1 each one is
+/// shorter than the one before, which steps cannot follow. In a step that has gained `gained` of approach (m/s), bounces at the speed `start`
+/// (m/s), negative where the pair approaches at the start of the step, last `2 e |start|/gained` steps, and all after it `1/(1 − e)` times as long.
+fn ends_bouncing(restitution: f64, start: f64, gained: f64) -> bool {
+    const STEPS: f64 = 4.0;
+    2.0 * restitution * (-start).max(0.0) < STEPS * (1.0 - restitution) * gained
+}
+
 impl Moved<'_> {
     fn place(&self, node: u32) -> DVec3 {
         self.position[node as usize]
@@ -173,8 +181,10 @@ impl Moved<'_> {
         }
         let relative = speed - drag;
         let along = normal.dot(relative);
-        // The speeds that decide the rebound, and the mean one in the step.
-        let [bounced, moved] = self.timing.lags().map(|lag| along + lag * normal.dot(slowed));
+        // How much the step has added to the approach; the speeds that decide the rebound, and the mean one in the step.
+        let gained = normal.dot(slowed);
+        let [bounced, moved] = self.timing.lags().map(|lag| along + lag * gained);
+        let restitution = if ends_bouncing(restitution, along + gained, gained) { 0.0 } else { restitution };
         // The speed that leaves the pair as near as it may come, and the one that throws it back.
         let apart = (gap.min(distance) - distance) / self.step - moved;
         let back = -(1.0 + restitution) * bounced;
@@ -239,5 +249,21 @@ impl Moved<'_> {
             own.velocity -= spin.cross(arm);
             own.is_changed = true;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ends_bouncing;
+
+    /// With e = ½ and a gain of 1 m/s in a step, a bounce at 2 m/s lasts two steps, the next one step, and all of them four.
+    #[test]
+    fn bounces_end_when_all_would_be_over_in_four_steps() {
+        assert!(ends_bouncing(0.5, -1.99, 1.0) && !ends_bouncing(0.5, -2.01, 1.0));
+        // Elastic ones never end, and without a force towards each other there is one only.
+        assert!(!ends_bouncing(1.0, -1e-9, 1.0) && !ends_bouncing(1.0, 1.0, 1.0));
+        assert!(!ends_bouncing(0.5, -1e-9, 0.0) && !ends_bouncing(0.5, -1.0, -1.0));
+        // What parts at the start of a step and is pressed together in it does not bounce.
+        assert!(ends_bouncing(0.5, 0.1, 1.0));
     }
 }
