@@ -128,7 +128,6 @@ impl Run {
             contacts: contacts.map(|contacts| self.contacts(contacts)),
             grips: self.grips.clone(),
             loads: self.loads.iter().map(|load| Arc::clone(load) as Arc<dyn Load>).collect(),
-            ..Surroundings::default()
         }
     }
 
