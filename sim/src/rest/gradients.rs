@@ -4,15 +4,17 @@
 //! trial, and interpolated. After some iterations they are evaluated where the bodies are. The better they have been interpolated, the later
 //! they are evaluated again; near rest, where forces are linear, an iteration costs one evaluation.
 //!
-//! Masses are the weights: nodes at the border have less of both mass and stiffness.
+//! Masses are the weights: nodes at the border have less of both mass and stiffness. When as many evaluations as the stiffness of
+//! [groups](super::coarse) takes were not enough, it is measured, and precedes the forces from then on; bodies that have turned since get a new one.
 //!
 //! J. Nocedal, S. Wright, Numerical Optimization (2006), chapter 5.2: the method of Polak and Ribière.
 
+use super::coarse::{Coarse, Groups};
 use super::{ENOUGH, Forces, MOST, SOUGHT};
 use glam::DVec3;
 
 /// Evaluations without half the residual, after which it does not fall: to the end of a search, and where it is small enough already.
-const IDLE: [u64; 2] = [20_000, 1500];
+const IDLE: [u64; 2] = [20_000, 1000];
 /// The most iterations with interpolated forces.
 const RARELY: u32 = 64;
 /// The largest error of interpolated forces, as a share of them, with which they are evaluated less often.
@@ -26,10 +28,13 @@ struct Way<'a> {
     position: Vec<DVec3>,
     acceleration: Vec<DVec3>,
     direction: Vec<DVec3>,
+    coarse: Option<Coarse<'a>>,
+    /// Where the accelerations lead: the ways of nodes (m) with the stiffness of groups, the accelerations themselves without it.
+    lead: Vec<DVec3>,
     /// The positions of a trial (m), and the accelerations there (m/s²).
     trial: Vec<DVec3>,
     there: Vec<DVec3>,
-    /// The square of the accelerations, and how far they point along the direction.
+    /// How far the accelerations point along their lead, and along the direction.
     square: f64,
     slope: f64,
     /// The share of the direction in the last iteration, and the longest of the next one.
@@ -38,12 +43,13 @@ struct Way<'a> {
 }
 
 /// Moves nodes until the residual is small or does not fall, and returns where they are (m). None moves farther than `longest` (m) at a time.
-pub(super) fn descend(forces: &mut Forces, longest: f64) -> Vec<DVec3> {
+pub(super) fn descend<'a>(forces: &'a mut Forces, groups: &'a Groups, longest: f64) -> Vec<DVec3> {
     let position = forces.world.state().position.clone();
     let mut way = Way::new(forces, longest, position);
     let mut residual = way.residual();
     let (mut best, mut since) = (residual, 0);
     let (mut often, mut age) = (1, 0);
+    let mut since_coarse = 0;
     while residual > SOUGHT && way.forces.evaluations < MOST {
         if way.forces.evaluations > since + IDLE[usize::from(best < ENOUGH)] {
             break;
@@ -58,6 +64,10 @@ pub(super) fn descend(forces: &mut Forces, longest: f64) -> Vec<DVec3> {
                 if residual < 0.5 * best {
                     (best, since) = (residual, way.forces.evaluations);
                 }
+                if way.forces.evaluations > since_coarse + groups.cost() {
+                    way.take_coarse(groups);
+                    since_coarse = way.forces.evaluations;
+                }
             }
             Some(_) => {}
             None => (often, age) = (1, 0),
@@ -69,16 +79,51 @@ pub(super) fn descend(forces: &mut Forces, longest: f64) -> Vec<DVec3> {
 impl<'a> Way<'a> {
     /// Along the forces at a position (m).
     fn new(forces: &'a mut Forces, longest: f64, position: Vec<DVec3>) -> Self {
-        let (mut acceleration, trial, there) = Default::default();
+        let (mut acceleration, trial, there, lead) = Default::default();
         forces.accelerations(&position, &mut acceleration);
         let direction = vec![DVec3::ZERO; acceleration.len()];
         let [square, slope, share, most] = [0.0; 4];
-        let mut way =
-            Self { forces, longest, position, acceleration, direction, trial, there, square, slope, share, most };
-        way.square = way.dot(&way.acceleration, &way.acceleration);
-        way.turn(0.0);
+        let coarse = None;
+        let mut way = Self {
+            forces,
+            longest,
+            position,
+            acceleration,
+            direction,
+            coarse,
+            lead,
+            trial,
+            there,
+            square,
+            slope,
+            share,
+            most,
+        };
+        way.begin();
         way.share = SOUGHT * way.most;
         way
+    }
+
+    /// Measures the stiffness of groups, and begins anew with it.
+    fn take_coarse(&mut self, groups: &'a Groups) {
+        let Self { forces, longest, position, acceleration, .. } = self;
+        self.coarse = Some(Coarse::new(groups, forces, *longest, position, acceleration));
+        self.begin();
+        self.share = 1.0;
+    }
+
+    /// Takes the direction in which the accelerations lead.
+    fn begin(&mut self) {
+        self.find_lead();
+        self.square = self.dot(&self.acceleration, &self.lead);
+        self.turn(0.0);
+    }
+
+    fn find_lead(&mut self) {
+        match &self.coarse {
+            Some(coarse) => coarse.lead(&self.acceleration, self.forces, &mut self.lead),
+            None => self.lead.clone_from(&self.acceleration),
+        }
     }
 
     fn residual(&mut self) -> f64 {
@@ -89,11 +134,12 @@ impl<'a> Way<'a> {
         self.forces.mass.iter().zip(one).zip(other).map(|((mass, one), &other)| mass * one.dot(other)).sum()
     }
 
-    /// Takes the accelerations and a share of the direction as the next direction, or the accelerations alone, if the forces point against it.
+    /// Takes the lead and a share of the direction as the next direction, or the lead alone, if the forces point against it.
     fn turn(&mut self, kept: f64) {
         let (mut slope, mut fastest) = (0.0, 0.0_f64);
-        for ((way, &acceleration), mass) in self.direction.iter_mut().zip(&self.acceleration).zip(&self.forces.mass) {
-            *way = acceleration + *way * kept;
+        let both = self.acceleration.iter().zip(&self.lead);
+        for ((way, (&acceleration, &lead)), mass) in self.direction.iter_mut().zip(both).zip(&self.forces.mass) {
+            *way = lead + *way * kept;
             slope += mass * way.dot(acceleration);
             fastest = fastest.max(way.length_squared());
         }
@@ -161,8 +207,9 @@ impl<'a> Way<'a> {
     /// Goes a share of the direction, to where the accelerations are those of the trial, and takes the next direction.
     fn go(&mut self, share: f64) {
         std::mem::swap(&mut self.acceleration, &mut self.there);
-        let before = self.dot(&self.acceleration, &self.there);
-        let square = self.dot(&self.acceleration, &self.acceleration);
+        self.find_lead();
+        let before = self.dot(&self.lead, &self.there);
+        let square = self.dot(&self.lead, &self.acceleration);
         let kept = (square - before) / std::mem::replace(&mut self.square, square);
         for (at, way) in self.position.iter_mut().zip(&self.direction) {
             *at += *way * share;

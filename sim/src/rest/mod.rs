@@ -4,6 +4,7 @@
 //! [move](motion) until they are at rest. Both take forces from steps: an acceleration is the velocity after a step from rest, divided by
 //! the step. So the fast code computes it, and obstacles, friction and grips count as they do in a step.
 
+mod coarse;
 mod gradients;
 mod motion;
 
@@ -19,6 +20,7 @@ use super::state::State;
 use super::surroundings::Surroundings;
 use super::world::{Stepping, World};
 use glam::DVec3;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The residual that is sought, as a share of the load.
@@ -103,14 +105,17 @@ pub fn equilibrium(
         world.set_free(&crew);
         world
     };
-    let mut forces = Forces::new(world(&initial.position), bodies);
+    let mut forces = Forces::new(world(&initial.position), bodies, shortest);
     if !meets {
         forces.check_held(bodies)?;
     }
     let longest = LONGEST * bodies.iter().map(|(body, _)| body.extent()).fold(0.0, f64::max);
     let (steps, enough) = if forces.world.has_surfaces() { (STEPS, ENOUGH_OF_SURFACES) } else { (1, ENOUGH) };
-    let position =
-        if meets || moves { motion::settle(&mut forces, steps) } else { gradients::descend(&mut forces, longest) };
+    let position = if meets || moves {
+        motion::settle(&mut forces, steps)
+    } else {
+        gradients::descend(&mut forces, &coarse::Groups::new(bodies), longest)
+    };
     // A model whose forces depend on its history has others in a world that starts there.
     forces.world = world(&position);
     let residual = match forces.mean(&position, steps) {
@@ -134,11 +139,13 @@ struct Forces {
     first: Option<f64>,
     /// The least load (N): that of which round-off of the forces is the share that is sought.
     least: f64,
+    /// The square of the shortest period over 2π (s²).
+    fast: f64,
     evaluations: u64,
 }
 
 impl Forces {
-    fn new(world: World, bodies: &[(Arc<Body>, &dyn ElasticModel)]) -> Self {
+    fn new(world: World, bodies: &[(Arc<Body>, &dyn ElasticModel)], shortest: f64) -> Self {
         let (mass, is_held) = (world.masses().to_vec(), world.held_at_start());
         let rounded = bodies.iter().map(|(body, model)| {
             let far = body.rest().iter().fold(body.extent(), |far, at| far.max(at.abs().max_element()));
@@ -146,7 +153,8 @@ impl Forces {
             force * force * body.len() as f64
         });
         let least = rounded.sum::<f64>().sqrt() / SOUGHT;
-        Self { world, mass, is_held, first: None, least, evaluations: 0 }
+        let fast = (shortest / TAU).powi(2);
+        Self { world, mass, is_held, first: None, least, fast, evaluations: 0 }
     }
 
     /// Writes the acceleration (m/s²) of each node at rest at a position (m), zero for nodes that are held. False if one is not finite.

@@ -5,7 +5,7 @@
 //! (−13.4, 53.4, −23.5) from (29.29, 70.71, 0), is quoted by the tests of `OpenFAST` (`bd_curved_beam` of BeamDyn) and by the documentation of Kynema.
 
 use super::Case;
-use crate::material::{Bar, Model, Rod, balance};
+use crate::material::{Bar, Model, Rod, rest_of};
 use glam::DVec3;
 use localshape::sim::{Body, Material};
 use std::f64::consts::FRAC_PI_4;
@@ -14,8 +14,6 @@ use std::sync::Arc;
 const MATERIAL: Material = Material { young: 1e7, poisson: 0.0 };
 const RADIUS: f64 = 100.0;
 const LOAD: f64 = 600.0;
-/// In which the load grows.
-const PARTS: u32 = 8;
 
 pub(super) const CASE: Case = Case {
     name: "An arc of 45° bent out of its plane",
@@ -39,11 +37,9 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
     let body = body.elements(straight.body.elements().clone()).masses(straight.body.mass().to_vec());
     let body = Arc::new(body.build().expect("an arc"));
     let made = model.on(&body, MATERIAL, 1.0 / f64::from(across))?;
+    let around = straight.under(DVec3::Z * LOAD);
+    let found = rest_of(&[(Arc::clone(&body), made.as_ref())], body.rest().to_vec(), &around, 1.0)?;
     let whole = straight.load(DVec3::Z * LOAD);
-    let found = (1..=PARTS).try_fold(body.rest().to_vec(), |start, part| {
-        let load: Vec<_> = whole.iter().map(|&force| force * (f64::from(part) / f64::from(PARTS))).collect();
-        balance(&body, made.as_ref(), &load, &straight.clamped(), &start)
-    })?;
     let ways = whole.iter().zip(&found).zip(body.rest()).map(|((force, now), rest)| (*now - *rest) * (force.z / LOAD));
     let start = DVec3::new(RADIUS * (1.0 - libm::cos(FRAC_PI_4)), RADIUS * libm::sin(FRAC_PI_4), 0.0);
     Some((end() - start).length() / ways.sum::<DVec3>().length())

@@ -1,7 +1,7 @@
 //! A column that buckles.
 
 use super::Case;
-use crate::material::{Bar, Model, balance};
+use crate::material::{Bar, Model};
 use glam::DVec3;
 use localshape::sim::Material;
 use localshape::sim::model::ElasticModel;
@@ -26,7 +26,7 @@ pub(super) const CASE: Case = Case {
 
 fn measure(model: &Model, refined: u32) -> Option<f64> {
     let across = 1 << refined;
-    let bar = Bar::new(model.elements, [across, 1, SLENDERNESS * across], 1.0 / f64::from(across), 1.0);
+    let bar = Bar::new(model.elements, [across, across, SLENDERNESS * across], 1.0 / f64::from(across), 1.0);
     let (made, material) = bar.model(model, MATERIAL)?;
     let [width, depth] = bar.section;
     let thin = PI * PI * bar.rigidity(material) / (4.0 * bar.length * bar.length);
@@ -43,7 +43,6 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
 
 /// Force over way across (N/m) of a column under a load (N).
 fn across_stiffness(bar: &Bar, model: &dyn ElasticModel, load: f64, push: f64) -> Option<f64> {
-    let forces = bar.load(DVec3::new(push, 0.0, -load));
-    let found = balance(&bar.body, model, &forces, &bar.clamped(), bar.body.rest())?;
+    let found = bar.bent(model, DVec3::new(push, 0.0, -load), bar.body.rest().to_vec())?;
     Some(push / bar.tip(&found).x)
 }

@@ -1,10 +1,10 @@
 //! Bars along z that are held at one end and loaded at the other.
 
-use super::balance::{balance, hold, rest_of};
+use super::balance::{dead, hold, rest_of};
 use super::{Elements, Model, mean_shift};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
-use localshape::sim::{Body, Course, Load, Loading, Material, Surroundings};
+use localshape::sim::{Body, Material, Surroundings};
 use std::sync::Arc;
 
 /// A bar.
@@ -32,10 +32,15 @@ impl Bar {
         (0..body.len()).filter(|&node| (body.rest()[node].z - height).abs() < 1e-6 * side).collect()
     }
 
-    /// A load (N) on the end, on each node in proportion to the area of the end around it.
+    /// A load (N) on the loaded end, on each node in proportion to the area of the end around it.
     pub(crate) fn load(&self, total: DVec3) -> Vec<DVec3> {
+        self.load_on(1, total)
+    }
+
+    fn load_on(&self, end: usize, total: DVec3) -> Vec<DVec3> {
+        let end = &self.ends[end];
         let [low, high] = [f64::min, f64::max].map(|pick| {
-            let rest = self.ends[1].iter().map(|&node| self.body.rest()[node]);
+            let rest = end.iter().map(|&node| self.body.rest()[node]);
             rest.reduce(|one, other| DVec3::new(pick(one.x, other.x), pick(one.y, other.y), 0.0)).unwrap_or_default()
         });
         let is_rim = |at: f64, low: f64, high: f64| (at - low).abs().min((at - high).abs()) < 1e-6 * self.side;
@@ -43,36 +48,20 @@ impl Bar {
             let rims = [is_rim(rest.x, low.x, high.x), is_rim(rest.y, low.y, high.y)];
             rims.iter().map(|&is_rim| if is_rim { 0.5 } else { 1.0 }).product::<f64>()
         };
-        let whole: f64 = self.ends[1].iter().map(|&node| part(self.body.rest()[node])).sum();
+        let whole: f64 = end.iter().map(|&node| part(self.body.rest()[node])).sum();
         let mut load = vec![DVec3::ZERO; self.body.len()];
-        self.ends[1].iter().for_each(|&node| load[node] = total * (part(self.body.rest()[node]) / whole));
+        end.iter().for_each(|&node| load[node] = total * (part(self.body.rest()[node]) / whole));
         load
     }
 
-    /// The bar as a cantilever: places of its nodes (m) under a load (N) across its end, from a start nearby.
-    pub(super) fn bent(&self, model: &dyn ElasticModel, load: f64, start: &[DVec3]) -> Option<Vec<DVec3>> {
-        balance(&self.body, model, &self.load(DVec3::X * load), &self.clamped(), start)
+    /// What a cantilever has around it: the hold of one end, and a load (N) on the other.
+    pub(crate) fn under(&self, load: DVec3) -> Surroundings {
+        Surroundings { grips: vec![hold(&self.ends[0])], loads: vec![dead(self.load(load))], ..Surroundings::default() }
     }
 
-    /// As [`Self::bent`], with a model that steps itself, in its own steps (s).
-    pub(super) fn settled(
-        &self,
-        model: &dyn ElasticModel,
-        load: f64,
-        start: &[DVec3],
-        step: f64,
-    ) -> Option<Vec<DVec3>> {
-        let load = Loading::dead((0..self.body.len() as u32).collect(), self.load(DVec3::X * load), Course::ALWAYS);
-        let (grips, loads) = (vec![hold(&self.ends[0])], vec![Arc::new(load) as Arc<dyn Load>]);
-        let around = Surroundings { grips, loads, ..Surroundings::default() };
-        rest_of(&[(Arc::clone(&self.body), model)], start.to_vec(), &around, step)
-    }
-
-    /// Which coordinates of each node do not change: those of its held end.
-    pub(crate) fn clamped(&self) -> Vec<[bool; 3]> {
-        let mut held = vec![[false; 3]; self.body.len()];
-        self.ends[0].iter().for_each(|&node| held[node] = [true; 3]);
-        held
+    /// The places of its nodes (m) as a cantilever under a load (N), from a start.
+    pub(crate) fn bent(&self, model: &dyn ElasticModel, load: DVec3, start: Vec<DVec3>) -> Option<Vec<DVec3>> {
+        rest_of(&[(Arc::clone(&self.body), model)], start, &self.under(load), 1.0)
     }
 
     /// The nodes at its first end, 0, or its last one, 1.
@@ -112,22 +101,16 @@ impl Bar {
         Some((made, is))
     }
 
-    /// Young's modulus and Poisson's ratio between a quarter and three quarters of the length, of a bar that is pulled by a little. Across
-    /// itself it is free.
+    /// Young's modulus and Poisson's ratio between a quarter and three quarters of the length, of a free bar that is pulled at both ends by a
+    /// little.
     fn pulled(&self, model: &dyn ElasticModel, about: Material) -> Option<Material> {
         const STRAIN: f64 = 1e-6;
-        let mut held = vec![[false; 3]; self.body.len()];
-        self.ends[0].iter().for_each(|&node| held[node][2] = true);
-        // The end neither moves across nor turns: one corner is held, and the next one along x does not move along y.
-        let &corner = self.ends[0].first()?;
-        let rest = |node: usize| self.body.rest()[node];
-        let is_beside = |&&node: &&usize| node != corner && rest(node).y == rest(corner).y;
-        let &other = self.ends[0].iter().rev().find(is_beside)?;
-        held[corner] = [true; 3];
-        held[other][1] = true;
         let [width, depth] = self.section;
         let load = STRAIN * about.young * width * depth;
-        let found = balance(&self.body, model, &self.load(DVec3::Z * load), &held, self.body.rest())?;
+        let ends = [0, 1].map(|end| self.load_on(end, DVec3::Z * load));
+        let loads = ends[1].iter().zip(&ends[0]).map(|(&high, &low)| high - low).collect();
+        let around = Surroundings { loads: vec![dead(loads)], ..Surroundings::default() };
+        let found = rest_of(&[(Arc::clone(&self.body), model)], self.body.rest().to_vec(), &around, 1.0)?;
         let layers = [-0.25, 0.25].map(|share| self.layer_at(share));
         let [low, high] = [0, 1].map(|at| mean_shift(&self.body, &found, &layers[at]).z);
         let [bottom, top] = [0, 1].map(|at| self.body.rest()[layers[at][0]].z);

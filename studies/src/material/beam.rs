@@ -128,28 +128,22 @@ fn tip(model: &Model, poisson: f64, across: u32) -> Tip {
     let made = bar.model(model, Material { poisson, ..MATERIAL });
     let ratio = made.as_ref().and_then(|(model, material)| {
         let load = LOAD * bar.rigidity(*material) / (bar.length * bar.length);
-        let found = bar.bent(model.as_ref(), load, bar.body.rest())?;
+        let found = bar.bent(model.as_ref(), DVec3::X * load, bar.body.rest().to_vec())?;
         Some(bar.tip(&found).x / timoshenko(*material, bar.length, bar.section, load))
     });
     Tip { model: *model, poisson, across, material: made.map(|(_, material)| material), ratio }
 }
 
 fn bend(model: &Model, along: u32) -> Bent {
-    /// The load grows by at most this (`P L²/EI`), and each balance starts from the one before.
-    const MOST: f64 = 2.5;
     let bar = Bar::new(model.elements, [THICK, THICK, along], SIDE, 1.0);
     let Some((made, material)) = bar.model(model, MATERIAL) else {
         return Bent { model: *model, ends: vec![None; MATTIASSON.len()] };
     };
-    let (mut position, mut before) = (Some(bar.body.rest().to_vec()), 0.0);
+    // Each balance starts from the one before.
+    let mut position = Some(bar.body.rest().to_vec());
     let end = |&(load, _): &(f64, Option<[f64; 2]>)| {
-        let parts = libm::ceil((load - before) / MOST) as u32;
-        for part in 1..=parts {
-            let load = before + (load - before) * f64::from(part) / f64::from(parts);
-            let load = load * bar.rigidity(material) / (bar.length * bar.length);
-            position = position.as_ref().and_then(|start| bar.bent(made.as_ref(), load, start));
-        }
-        before = load;
+        let load = DVec3::X * (load * bar.rigidity(material) / (bar.length * bar.length));
+        position = position.take().and_then(|start| bar.bent(made.as_ref(), load, start));
         let moved = bar.tip(position.as_ref()?) / bar.length;
         Some([moved.x, -moved.z])
     };

@@ -4,13 +4,13 @@
 //! (48, 60) and (0, 44); `E` = 1, `ν` = 1/3, unit thickness, plane stress, and a shear load of 1, uniform along the right side. Literature gives
 //! the deflection of the middle of that side.
 
-use super::balance::balance;
+use super::balance::{dead, hold, rest_of};
 use super::{Elements, MODELS, Model, decimals};
 use crate::page::{Contents, Page, Plot};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table};
 use glam::DVec3;
-use localshape::sim::{Body, Dimension, Material};
+use localshape::sim::{Body, Dimension, Material, Surroundings};
 use std::sync::Arc;
 
 /// The study.
@@ -81,7 +81,7 @@ pub(crate) fn measure(study: &Cook, watch: &Watch<'_>) -> Option<Results> {
 fn deflection(model: &Model, cells: u32) -> Option<f64> {
     let body = panel(model, cells);
     let made = model.on(&body, MATERIAL, 1.0)?;
-    let held: Vec<_> = body.rest().iter().map(|rest| [rest.x == 0.0; 3]).collect();
+    let held: Vec<_> = (0..body.len()).filter(|&node| body.rest()[node].x == 0.0).collect();
     let is_right = |rest: &DVec3| (rest.x - 48.0).abs() < 1e-9;
     let right: Vec<_> = (0..body.len()).filter(|&node| is_right(&body.rest()[node])).collect();
     let mut load = vec![DVec3::ZERO; body.len()];
@@ -89,7 +89,8 @@ fn deflection(model: &Model, cells: u32) -> Option<f64> {
         let part = if at == 0 || at + 1 == right.len() { 0.5 } else { 1.0 };
         load[node] = DVec3::Y * (LOAD * part / f64::from(cells));
     }
-    let found = balance(&body, made.as_ref(), &load, &held, body.rest())?;
+    let around = Surroundings { grips: vec![hold(&held)], loads: vec![dead(load)], ..Surroundings::default() };
+    let found = rest_of(&[(Arc::clone(&body), made.as_ref())], body.rest().to_vec(), &around, 1.0)?;
     let middle = right[right.len() / 2];
     Some((found[middle].y - body.rest()[middle].y) / LOAD)
 }

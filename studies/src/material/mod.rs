@@ -1,8 +1,7 @@
 //! The models as materials: bars, irregular blocks and a membrane in balance under loads, beside closed forms and the literature.
 //!
-//! A model is named as in a scene, with the elements that it takes, and gets the same material as all others. Balances are found by
-//! Newton's method from the forces alone, so that any model with forces can join with one line in [`MODELS`]. One that steps itself is stepped
-//! until it is at rest.
+//! A model is named as in a scene, with the elements that it takes, and gets the same material as all others. Balances are those of the
+//! simulation, so that any model with a potential can join with one line in [`MODELS`].
 
 mod balance;
 mod bar;
@@ -13,7 +12,7 @@ mod rod;
 mod theory;
 mod time;
 
-pub(crate) use balance::{Parts, balance, hold, rest_of};
+pub(crate) use balance::{Parts, hold, rest_of};
 pub(crate) use bar::Bar;
 pub(crate) use beam::Beam;
 pub(crate) use cook::Cook;

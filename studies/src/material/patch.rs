@@ -4,13 +4,14 @@
 //! A. Aziz (ed.), "The mathematical foundations of the finite element method", 1972, 557; R. Taylor and others, "The patch test: a condition
 //! for assessing FEM convergence", International Journal for Numerical Methods in Engineering 22, 39 (1986)).
 
-use super::balance::{Forces, balance};
+use super::balance::{Forces, hold, rest_of};
 use super::{MODELS, Model};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table, or_dash};
 use glam::{DMat3, DVec3};
 use localshape::sim::geometry::volumes_at_rest;
-use localshape::sim::{Dimension, Material};
+use localshape::sim::{Dimension, Material, Surroundings};
+use std::sync::Arc;
 
 /// The study.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,18 +109,17 @@ impl Patch {
             .rest()
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
-        let held: Vec<_> =
-            body.rest().iter().map(|&rest| [(rest - low).min(high - rest).min_element() < 1e-6 * SIDE; 3]).collect();
-        let load = vec![DVec3::ZERO; body.len()];
-        let found = balance(&body, made.as_ref(), &load, &held, &uniform)?;
-        let inside = || found.iter().zip(&uniform).zip(&held).filter(|(_, held)| !held[0]);
-        let squares_of_miss: f64 = inside().map(|((found, uniform), _)| found.distance_squared(*uniform)).sum();
+        let is_outer = |&rest: &DVec3| (rest - low).min(high - rest).min_element() < 1e-6 * SIDE;
+        let (held, inside): (Vec<_>, Vec<_>) = (0..body.len()).partition(|&node| is_outer(&body.rest()[node]));
+        let around = Surroundings { grips: vec![hold(&held)], ..Surroundings::default() };
+        let found = rest_of(&[(Arc::clone(&body), made.as_ref())], uniform.clone(), &around, 1.0)?;
+        let squares_of_miss: f64 = inside.iter().map(|&node| found[node].distance_squared(uniform[node])).sum();
         let trace = strain.x_axis.x + strain.y_axis.y + strain.z_axis.z;
         let density = material.shear() * squares(strain) + 0.5 * material.lame(Dimension::Space) * trace * trace;
         let expected = density * SIZE * SIZE * volumes_at_rest(&body).iter().sum::<f64>();
         let energy = Forces::new(&body, made.as_ref(), &found).energy(&found)?;
         let unit = SIZE * SIDE;
-        Some([squares_of_miss / (inside().count() as f64 * unit * unit), energy / expected - 1.0])
+        Some([squares_of_miss / (inside.len() as f64 * unit * unit), energy / expected - 1.0])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Error against time: one beam with every model and resolution, the error of its end at rest, and the time of a simulated second.
 
-use super::balance::hold;
+use super::balance::{hold, rest_of};
 use super::bar::Bar;
 use super::{Elements, MENDED, MODELS, Model, STEPPING};
 use crate::page::{Contents, Page, Plot};
@@ -144,8 +144,6 @@ struct Cantilever {
 impl Cantilever {
     /// A beam of cells across its depth and width; `None` if the model does not take it or has no balance.
     fn new(model: &Model, [deep, wide]: [u32; 2]) -> Option<Self> {
-        /// Parts of the load, each from the balance before.
-        const PARTS: u32 = 2;
         let side = DEPTH / f64::from(deep);
         let bar = Bar::new(model.elements, [deep, wide, SLENDERNESS * deep], side, DENSITY);
         let (mut made, is) = bar.model(model, MATERIAL)?;
@@ -155,10 +153,10 @@ impl Cantilever {
             made = bar.model(model, material)?.0;
         }
         let load = LOAD * bar.rigidity(MATERIAL) / (bar.length * bar.length);
-        let mut position = bar.body.rest().to_vec();
-        for part in 1..=PARTS {
-            position = bar.bent(made.as_ref(), load * f64::from(part) / f64::from(PARTS), &position)?;
-        }
+        // A model that steps itself rests where the shape model does in small steps.
+        let resting = Model { kind: if model.kind == "xpbd" { "shape-based" } else { model.kind }, ..*model };
+        let resting = bar.model(&resting, MATERIAL)?.0;
+        let position = bar.bent(resting.as_ref(), DVec3::X * load, bar.body.rest().to_vec())?;
         let held = hold(bar.end(0));
         let restraint =
             Restraint { grips: std::slice::from_ref(&held), duration: f64::INFINITY, ..Restraint::default() };
@@ -166,18 +164,19 @@ impl Cantilever {
         let (step, deflection) = (Stability::SHARE * stability.largest, bar.tip(&position).x / bar.length);
         let mut beam = Self { bar, model: made, held, step, deflection, softer: Vec::new() };
         if beam.model.projection(&beam.bar.body).is_some() {
-            beam.settle(load, &position)?;
+            beam.settle(load, position)?;
         }
         Some(beam)
     }
 
-    /// The step of a model that steps itself, and its deflection in such steps, from that in small ones: the balance of forces.
-    fn settle(&mut self, load: f64, balance: &[DVec3]) -> Option<()> {
+    /// The step of a model that steps itself, and its deflection in such steps, from that in small ones.
+    fn settle(&mut self, load: f64, mut position: Vec<DVec3>) -> Option<()> {
         let small = self.deflection;
         self.step = LONGEST * self.model.properties(&self.bar.body).shortest_period(&self.bar.body);
         loop {
-            let found = self.bar.settled(self.model.as_ref(), load, balance, self.step)?;
-            self.deflection = self.bar.tip(&found).x / self.bar.length;
+            let parts = [(Arc::clone(&self.bar.body), self.model.as_ref())];
+            position = rest_of(&parts, position, &self.bar.under(DVec3::X * load), self.step)?;
+            self.deflection = self.bar.tip(&position).x / self.bar.length;
             self.softer.push(self.deflection / small - 1.0);
             if self.softer.last()?.abs() < CLOSE {
                 return Some(());
