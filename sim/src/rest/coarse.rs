@@ -12,6 +12,7 @@ use super::super::model::ElasticModel;
 use super::Forces;
 use glam::DVec3;
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Nodes of a group, and the most groups.
@@ -19,10 +20,11 @@ const NODES: usize = 64;
 const GROUPS: usize = 64;
 /// Displacements and rotations of a group.
 const MODES: usize = 6;
-/// The way of nodes for which forces are compared, as a share of the longest way in an iteration.
-const TINY: f64 = 1e-7;
-/// What is left of a stiffness that is nothing but error, as a share of it.
-const NOTHING: f64 = 1e-7;
+/// The way of nodes, there and back, for which forces are compared, as a share of the longest way in an iteration.
+const TINY: f64 = 2e-6;
+/// A stiffness that is nothing but error, as a share of that with which the modes would be as fast as the fastest node. Slender bodies have
+/// soft modes.
+const NOTHING: f64 = 1e-9;
 
 /// The groups of all bodies.
 pub(super) struct Groups {
@@ -31,16 +33,19 @@ pub(super) struct Groups {
     colours: Vec<Vec<usize>>,
     /// The groups that share elements with each, and itself.
     near: Vec<BTreeSet<usize>>,
+    /// The nodes and the first group of each body.
+    bodies: Vec<(Range<usize>, usize)>,
 }
 
 impl Groups {
     pub(super) fn new(bodies: &[(Arc<Body>, &dyn ElasticModel)]) -> Self {
         let all: usize = bodies.iter().map(|(body, _)| body.len()).sum();
         let size = NODES.max(all / GROUPS);
-        let (mut of_node, mut near) = (Vec::with_capacity(all), Vec::new());
+        let (mut of_node, mut near, mut firsts) = (Vec::with_capacity(all), Vec::new(), Vec::new());
         for (body, _) in bodies {
             let first = of_node.len();
             of_node.resize(first + body.len(), 0);
+            firsts.push((first..of_node.len(), near.len()));
             halve(body.rest(), &mut Vec::from_iter(0..body.len()), size, &mut |nodes| {
                 nodes.iter().for_each(|node| of_node[first + node] = near.len());
                 near.push(BTreeSet::new());
@@ -58,12 +63,12 @@ impl Groups {
                 None => colours.push(vec![group]),
             }
         }
-        Self { of_node, colours, near }
+        Self { of_node, colours, near, bodies: firsts }
     }
 
     /// The evaluations of forces that [`Coarse::new`] takes.
     pub(super) fn cost(&self) -> u64 {
-        (MODES * self.colours.len()) as u64
+        (2 * MODES * self.colours.len()) as u64
     }
 }
 
@@ -92,14 +97,8 @@ pub(super) struct Coarse<'a> {
 }
 
 impl<'a> Coarse<'a> {
-    /// Evaluates forces after small ways of the groups from a position (m), at which the accelerations (m/s²) are given.
-    pub(super) fn new(
-        groups: &'a Groups,
-        forces: &mut Forces,
-        longest: f64,
-        position: &[DVec3],
-        here: &[DVec3],
-    ) -> Self {
+    /// Evaluates forces after small ways of the groups from a position (m), there and back.
+    pub(super) fn new(groups: &'a Groups, forces: &mut Forces, longest: f64, position: &[DVec3]) -> Self {
         let count = groups.near.len();
         let mut middles = vec![(DVec3::ZERO, 0.0); count];
         for (&group, &at) in groups.of_node.iter().zip(position) {
@@ -110,28 +109,35 @@ impl<'a> Coarse<'a> {
         let arms = groups.of_node.iter().zip(position).map(arm).collect();
         let mut coarse =
             Self { groups, arms, factor: vec![vec![0.0; MODES * count]; MODES * count], fast: forces.fast };
-        let way = TINY * longest;
-        let mut there = Vec::new();
         for colour in &groups.colours {
             for mode in 0..MODES {
                 let mut moves = vec![0.0; MODES * count];
-                colour.iter().for_each(|group| moves[MODES * group + mode] = way);
-                let moved = |node: usize| {
-                    position[node] + if forces.is_held[node] { DVec3::ZERO } else { coarse.displacement(&moves, node) }
-                };
-                let trial: Vec<_> = (0..position.len()).map(moved).collect();
-                forces.accelerations(&trial, &mut there);
-                let change: Vec<_> = there.iter().zip(here).map(|(&there, &here)| (here - there) / way).collect();
-                let change = coarse.sums(&change, &forces.mass);
+                colour.iter().for_each(|group| moves[MODES * group + mode] = TINY * longest);
+                let change = coarse.change(forces, position, &moves);
                 for &group in colour {
                     for row in groups.near[group].iter().flat_map(|near| MODES * near..MODES * (near + 1)) {
-                        coarse.factor[row][MODES * group + mode] = change[row];
+                        coarse.factor[row][MODES * group + mode] = change[row] / (TINY * longest);
                     }
                 }
             }
         }
-        coarse.factorise();
+        coarse.factorise(forces);
         coarse
+    }
+
+    /// By how much the force along each mode (N) falls when groups move by shares of their modes: half of the difference there and back, without
+    /// what is square.
+    fn change(&self, forces: &mut Forces, position: &[DVec3], moves: &[f64]) -> Vec<f64> {
+        let [there, back] = [1.0, -1.0].map(|sign| {
+            let place = |node: usize| position[node] + self.displacement(moves, node) * sign;
+            let is_held = |node: usize| forces.is_held[node];
+            let trial: Vec<_> =
+                (0..position.len()).map(|node| if is_held(node) { position[node] } else { place(node) }).collect();
+            let mut accelerations = Vec::new();
+            forces.accelerations(&trial, &mut accelerations);
+            self.sums(&accelerations, &forces.mass)
+        });
+        back.into_iter().zip(there).map(|(back, there)| 0.5 * (back - there)).collect()
     }
 
     /// Way of a node (m) if groups move by shares of their modes.
@@ -153,18 +159,32 @@ impl<'a> Coarse<'a> {
         sums
     }
 
-    /// Replaces the lower triangle of the stiffness by its factor (A. L. Cholesky). Modes without stiffness get an infinite one, and stay.
-    fn factorise(&mut self) {
+    /// Replaces the lower triangle of the stiffness, made symmetric where loads follow the body, by its factor (A. L. Cholesky). Modes without
+    /// stiffness get an infinite one, and stay.
+    fn factorise(&mut self, forces: &Forces) {
+        let mut fastest = vec![0.0; self.factor.len()];
+        for ((&group, &arm), &mass) in self.groups.of_node.iter().zip(&self.arms).zip(&forces.mass) {
+            let turns = DVec3::AXES.map(|axis| axis.cross(arm).length_squared());
+            let both = [1.0; 3].into_iter().chain(turns).map(|square| mass * square / self.fast);
+            fastest[MODES * group..].iter_mut().zip(both).for_each(|(sum, part)| *sum += part);
+        }
+        // Springs on one group keep a body in place that nothing holds.
+        let free = self.groups.bodies.iter().filter(|(nodes, _)| !forces.is_held[nodes.clone()].contains(&true));
+        for row in free.flat_map(|(_, group)| MODES * group..MODES * (group + 1)) {
+            self.factor[row][row] += fastest[row];
+        }
         for row in 0..self.factor.len() {
+            for column in 0..row {
+                self.factor[row][column] = 0.5 * (self.factor[row][column] + self.factor[column][row]);
+            }
             let (above, rest) = self.factor.split_at_mut(row);
             let own = &mut rest[0];
-            let whole = own[row];
             for column in 0..row {
                 let known: f64 = own[..column].iter().zip(&above[column]).map(|(a, b)| a * b).sum();
                 own[column] = (own[column] - known) / above[column][column];
             }
-            let left = whole - own[..row].iter().map(|known| known * known).sum::<f64>();
-            own[row] = if left > NOTHING * whole { left.sqrt() } else { f64::INFINITY };
+            let left = own[row] - own[..row].iter().map(|known| known * known).sum::<f64>();
+            own[row] = if left > NOTHING * fastest[row] { left.sqrt() } else { f64::INFINITY };
         }
     }
 

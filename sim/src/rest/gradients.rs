@@ -20,6 +20,9 @@ const RARELY: u32 = 64;
 /// The largest error of interpolated forces, as a share of them, with which they are evaluated less often.
 const CLOSE: f64 = 0.1;
 
+/// The longest way to where there should be no force along the direction, over that of the trial.
+const FARTHER: f64 = 4.0;
+
 /// The nodes and the way on which they are.
 struct Way<'a> {
     forces: &'a mut Forces,
@@ -100,14 +103,14 @@ impl<'a> Way<'a> {
             most,
         };
         way.begin();
-        way.share = SOUGHT * way.most;
+        // As far as the fastest node would go.
+        way.share = way.forces.fast;
         way
     }
 
     /// Measures the stiffness of groups, and begins anew with it.
     fn take_coarse(&mut self, groups: &'a Groups) {
-        let Self { forces, longest, position, acceleration, .. } = self;
-        self.coarse = Some(Coarse::new(groups, forces, *longest, position, acceleration));
+        self.coarse = Some(Coarse::new(groups, self.forces, self.longest, &self.position));
         self.begin();
         self.share = 1.0;
     }
@@ -165,8 +168,9 @@ impl<'a> Way<'a> {
             self.share = 0.1 * trial;
             return None;
         };
-        let share = if slope < self.slope { trial * self.slope / (self.slope - slope) } else { 4.0 * trial };
-        let share = share.min(self.most);
+        let share = if slope < self.slope { trial * self.slope / (self.slope - slope) } else { f64::INFINITY };
+        // Round-off of forces that hardly change may call for any way.
+        let share = share.min(FARTHER * trial).min(self.most);
         let part = share / trial;
         for (there, &here) in self.there.iter_mut().zip(&self.acceleration) {
             *there = here + (*there - here) * part;

@@ -22,7 +22,7 @@ pub(super) const CASE: Case = Case {
 
 fn measure(model: &Model, refined: u32) -> Option<f64> {
     let across = 1 << refined;
-    let bar = Bar::new(model.elements, [across, 1, SLENDERNESS * across], 1.0 / f64::from(across), 1.0);
+    let bar = Bar::new(model.elements, [across, across, SLENDERNESS * across], 1.0 / f64::from(across), 1.0);
     let (made, material) = bar.model(model, MATERIAL)?;
     let load = LOAD * bar.rigidity(material) / (bar.length * bar.length);
     let shares: Vec<f64> = bar.load(DVec3::X).iter().map(|force| force.x).collect();
@@ -35,6 +35,5 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
     let follower: Arc<dyn Load> = Arc::new(follows);
     let found = at_rest(&bar.body, made.as_ref(), bar.end(0), vec![follower])?;
     let rod = Rod::square(bar.length, DVec3::ZERO, material);
-    // The rod is one wide.
-    Some(rod.followed(DVec3::X * (load / bar.section[0])).x / bar.tip(&found).x)
+    Some(rod.followed(DVec3::X * load).x / bar.tip(&found).x)
 }

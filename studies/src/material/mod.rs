@@ -154,7 +154,9 @@ fn mean_shift(body: &Body, position: &[DVec3], nodes: &[usize]) -> DVec3 {
     nodes.iter().map(|&node| position[node] - body.rest()[node]).sum::<DVec3>() / nodes.len() as f64
 }
 
-/// A number with some decimals, or a dash.
+/// A number with some decimals, or a dash. What is rounded to zero has no sign.
 pub(crate) fn decimals(number: Option<f64>, decimals: usize) -> Cell {
-    or_dash(number.map(|number| format!("{number:.decimals$}")))
+    let smallest = 0.5 * 0.1_f64.powi(decimals as i32);
+    let signed = |number: f64| if number.abs() < smallest { 0.0 } else { number };
+    or_dash(number.map(|number| format!("{:.decimals$}", signed(number))))
 }
