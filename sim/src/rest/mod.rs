@@ -1,8 +1,8 @@
 //! Rest: the positions at which elastic forces balance gravity, loads and what holds bodies.
 //!
-//! Bodies that meet nothing are moved by [conjugate gradients](gradients). Where there is contact, and for models without forces, they
-//! [move](motion) until they are at rest. Both take forces from steps: an acceleration is the velocity after a step from rest, divided by
-//! the step. So the fast code computes it, and obstacles, friction and grips count as they do in a step.
+//! Bodies that meet nothing are moved by [conjugate gradients](gradients), led by [groups of nodes](coarse). Where there is contact, and for
+//! models without forces, they [move](motion) until they are at rest. Both take forces from steps: an acceleration is the velocity after a step
+//! from rest, divided by the step. So the fast code computes it, and obstacles, friction and grips count as they do in a step.
 
 mod coarse;
 mod gradients;
@@ -76,7 +76,8 @@ pub enum NoEquilibrium {
 /// not move, loads stay as they are, and grips that hold nodes at the start hold them there. Contact does not rebound. The rest of a model that
 /// [moves its nodes itself](ElasticModel::projection) depends on the time `step` (s), that of others does not.
 ///
-/// A balance is a least potential near the start, as far as forces have one: a straight column stays straight.
+/// A balance is a least potential near the start, as far as forces have one. Above the load at which it buckles, a straight column goes to any
+/// side, or stays straight.
 ///
 /// # Errors
 /// When nothing holds a body, or no balance was found.
