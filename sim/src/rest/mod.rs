@@ -154,8 +154,8 @@ impl Forces {
             force * force * body.len() as f64
         });
         let least = rounded.sum::<f64>().sqrt() / SOUGHT;
-        let fast = (shortest / TAU).powi(2);
-        Self { world, mass, is_held, first: None, least, fast, evaluations: 0 }
+        let swing = shortest / TAU;
+        Self { world, mass, is_held, first: None, least, fast: swing * swing, evaluations: 0 }
     }
 
     /// Writes the acceleration (m/s²) of each node at rest at a position (m), zero for nodes that are held. False if one is not finite.

@@ -156,7 +156,9 @@ fn mean_shift(body: &Body, position: &[DVec3], nodes: &[usize]) -> DVec3 {
 
 /// A number with some decimals, or a dash. What is rounded to zero has no sign.
 pub(crate) fn decimals(number: Option<f64>, decimals: usize) -> Cell {
-    let smallest = 0.5 * 0.1_f64.powi(decimals as i32);
-    let signed = |number: f64| if number.abs() < smallest { 0.0 } else { number };
-    or_dash(number.map(|number| format!("{:.decimals$}", signed(number))))
+    let text = |number: f64| {
+        let text = format!("{number:.decimals$}");
+        if text.trim_start_matches(['-', '0', '.']).is_empty() { text.replace('-', "") } else { text }
+    };
+    or_dash(number.map(text))
 }
