@@ -79,6 +79,38 @@ fn slender_bodies_bend_at_once() {
     }
 }
 
+/// A bar that is pulled by `ω² m x` from its held end on is pulled apart at the latest where `ω > π/2 √(E/ρ)/L`: its balance is not stable, and
+/// no state of rest.
+#[test]
+fn an_unstable_balance_is_no_rest() {
+    let (side, young) = (0.1, 1e4);
+    let body = bricks([8, 2, 2], DVec3::splat(side));
+    let mut mass = vec![0.0; body.len()];
+    body.elements().iter().flatten().for_each(|&node| mass[node as usize] += 0.125);
+    let body = Body::builder(body.rest().to_vec()).elements(body.elements().clone()).masses(mass.clone());
+    let body = Arc::new(body.build().expect("a bar"));
+    let model = linear::model(&body, Material { young, poisson: 0.0 }, 0.0).expect("bricks");
+    let largest = std::f64::consts::FRAC_PI_2 * (young * side.powi(3)).sqrt() / 0.8;
+    for share in [0.8, 1.1] {
+        let (mass, square) = (mass.clone(), (share * largest).powi(2));
+        let pull = move |_: f64, position: &[DVec3], forces: &mut [DVec3]| {
+            let pulls = position.iter().zip(&mass).map(|(at, mass)| DVec3::X * (mass * square * at.x));
+            forces.iter_mut().zip(pulls).for_each(|(force, pull)| *force += pull);
+        };
+        let (grips, loads) = (vec![held(nodes(&body, |at| at.x < 0.01), 0.0)], vec![Arc::new(pull) as Arc<dyn Load>]);
+        let around = Surroundings { grips, loads, ..Surroundings::default() };
+        let found = rest(&body, &*model, &around, 1);
+        if share < 1.0 {
+            // `L tan(φ)/φ`, with `φ` the share of a quarter of a turn.
+            let angle = share * std::f64::consts::FRAC_PI_2;
+            let end = found.expect("a state of rest").position[8].x;
+            assert!((end / (0.8 * angle.tan() / angle) - 1.0).abs() < 0.01, "{end} m");
+        } else {
+            assert!(matches!(found, Err(NoEquilibrium::Unbalanced { .. })), "{found:?}");
+        }
+    }
+}
+
 /// A bar under its own weight sinks by `ρ g L²/2E`; nodes of linear elements without contraction have the exact places.
 #[test]
 fn a_bar_hangs_by_the_closed_form() {
