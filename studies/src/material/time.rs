@@ -94,15 +94,14 @@ pub(crate) struct Results {
 /// Measures with the rayon thread pool of the caller, which has one thread; `None` if `watch` stops it.
 pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
     let corotational = MODELS.iter().find(|model| model.name == "corotational")?;
-    // Without contraction the width does not matter to hexahedra, so that one cell suffices.
-    let fine = study.fine.map(|across| Cantilever::new(corotational, [across, 1]).filter(|_| watch(1)));
+    let fine = study.fine.map(|across| Cantilever::new(corotational, across).filter(|_| watch(1)));
     let [Some(coarse), Some(fine)] = fine else { return None };
     let parts = study.fine.map(|across| f64::from(across * across));
     let reference = (parts[1] * fine.deflection - parts[0] * coarse.deflection) / (parts[1] - parts[0]);
     let mut beams = Vec::new();
     for model in Time::models() {
         for &across in &study.across {
-            beams.extend(Cantilever::new(model, [across; 2]).map(|beam| (*model, across, beam)));
+            beams.extend(Cantilever::new(model, across).map(|beam| (*model, across, beam)));
             if !watch(1) {
                 return None;
             }
@@ -143,9 +142,9 @@ struct Cantilever {
 
 impl Cantilever {
     /// A beam of cells across its depth and width; `None` if the model does not take it or has no balance.
-    fn new(model: &Model, [deep, wide]: [u32; 2]) -> Option<Self> {
-        let side = DEPTH / f64::from(deep);
-        let bar = Bar::new(model.elements, [deep, wide, SLENDERNESS * deep], side, DENSITY);
+    fn new(model: &Model, across: u32) -> Option<Self> {
+        let side = DEPTH / f64::from(across);
+        let bar = Bar::new(model.elements, [across, across, SLENDERNESS * across], side, DENSITY);
         let (mut made, is) = bar.model(model, MATERIAL)?;
         if model.is_springs() {
             // Springs with which the beam, when it is pulled, has the modulus of the material.
