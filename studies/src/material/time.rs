@@ -153,8 +153,8 @@ impl Cantilever {
         }
         let load = LOAD * bar.rigidity(MATERIAL) / (bar.length * bar.length);
         // A model that steps itself rests where the shape model does in small steps.
-        let resting = Model { kind: if model.kind == "xpbd" { "shape-based" } else { model.kind }, ..*model };
-        let resting = bar.model(&resting, MATERIAL)?.0;
+        let twin = Model { kind: "shape-based", ..*model };
+        let resting = if model.kind == "xpbd" { bar.model(&twin, MATERIAL)?.0 } else { Arc::clone(&made) };
         let position = bar.bent(resting.as_ref(), DVec3::X * load, bar.body.rest().to_vec())?;
         let held = hold(bar.end(0));
         let restraint =

@@ -10,6 +10,8 @@ fn every_model_has_an_error_and_a_time() {
     assert_eq!(results.timed.len(), Time::models().count());
     // The elastica ends at 0.4935, and shear adds a hundredth of it.
     assert!((results.reference - 0.4994).abs() < 0.02, "{}", results.reference);
+    let springs = results.timed.iter().find(|one| one.model.name == "mass-spring").expect("springs");
+    assert!((springs.across_length - 0.275).abs() < 0.01, "springs of the modulus of the beam: {springs:?}");
     for one in &results.timed {
         assert!(one.step > 0.0 && one.time.median > 0.0 && one.error.is_finite(), "{one:?}");
         assert!((0.0..1.0).contains(&one.across_length), "{one:?}");
