@@ -11,6 +11,8 @@ const SHADES = 64;
 // The turned-over elements alone: their depth, and their colour with the brightness of the light.
 @group(1) @binding(0) var alarm_depth: texture_depth_2d;
 @group(1) @binding(1) var alarm_colour: texture_2d<f32>;
+// For obstacles: the depths of bodies.
+@group(1) @binding(0) var body_depth: texture_depth_2d;
 
 struct Corner {
     @builtin(position) place: vec4<f32>,
@@ -322,7 +324,7 @@ fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
 // The opacity of an obstacle, by which the processor recognises it. The difference to opaque is invisible.
 const OBSTACLE = 254.0 / 255.0;
 
-// The same light on another material, nothing below the floor, and fading at the sides of its room.
+// The same light on another material, nothing below the floor, fading at the sides of its room, and less where bodies lie behind it.
 @fragment
 fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
     unpack(corner);
@@ -337,5 +339,7 @@ fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
     if opacity <= 0.0 {
         discard;
     }
-    return vec4(corner.own * light.diffuse + light.gloss, OBSTACLE * opacity);
+    let behind = textureLoad(body_depth, vec2<i32>(corner.place.xy), 0);
+    let over = select(1.0, SOLID_OVER_BODIES, behind > 0.0);
+    return vec4(corner.own * light.diffuse + light.gloss, OBSTACLE * opacity * over);
 }

@@ -25,6 +25,8 @@ measures! {
     NEARER = 0.02;
     /// The opacity of a plate in front of bodies, relative to its own, so that they stay visible.
     OVER_BODIES = 0.6;
+    /// The opacity of a solid obstacle in front of bodies, which it would hide otherwise.
+    SOLID_OVER_BODIES = 0.5;
 }
 
 /// Elements without faces.

@@ -73,7 +73,11 @@ fn along(
         if own.cmplt(Vec2::new(left, top) + 1.0).any() || own.cmpge(Vec2::new(left + wide, top + high) - 1.0).any() {
             continue;
         }
-        let depth = |at: Vec2| if line.kind.is_alarm() { depths.depth_alone(at) } else { depths.depth(at) };
+        let depth = |at: Vec2| match line.kind {
+            kind if kind.is_alarm() => depths.depth_alone(at),
+            LineKind::ObstacleEdge | LineKind::ObstacleContour => depths.depth(at),
+            _ => depths.depth_of_bodies(at),
+        };
         let [first, second, here] = [before, after, own].map(depth);
         // A crease has faces on both sides, so depths before the nearer one hide it. A contour has the surface on one side,
         // so it is hidden if all depths around it are before it.

@@ -5,7 +5,7 @@ use super::panel::palette;
 use crate::gpu::Layers;
 use crate::picture::measures::{
     ALARM_EDGE_ALPHA, ALARM_EDGE_WIDTH, BAR_ALPHA, BAR_WIDTH, CASING, EDGE_ALPHA, EDGE_WIDTH, LEAST_CASING, NEARER,
-    OVER_BODIES, edging,
+    OVER_BODIES, SOLID_OVER_BODIES, edging,
 };
 use crate::picture::{
     Bead, Colour, Item, Line, LineKind, Paint, Palette, Pane, Panel, Path, Pen, Picture, Rectangle, Second, Step,
@@ -58,10 +58,11 @@ const LEVELS: usize = 8;
 #[derive(Debug)]
 pub(super) struct Depths<'a> {
     pub(super) panel: &'a Panel,
-    /// The opacities of pixels, and the depths of all bodies and of turned-over elements alone.
+    /// The opacities of pixels, and the depths of all bodies, of turned-over elements alone, and of bodies with the obstacles before them.
     marks: &'a [[u8; 4]],
     all: &'a [f32],
     alone: Option<&'a [f32]>,
+    with_obstacles: Option<&'a [f32]>,
     stride: usize,
     plates: Vec<Plate>,
 }
@@ -78,10 +79,12 @@ struct Plate {
 }
 
 impl<'a> Depths<'a> {
-    pub(super) fn new(panel: &'a Panel, layers: Layers<'a>, has_behind: bool) -> Self {
+    /// The layers have the picture, the depths of its bodies and, where it `has` them, of turned-over elements and of bodies with solid obstacles.
+    pub(super) fn new(panel: &'a Panel, layers: Layers<'a>, [has_behind, has_solids]: [bool; 2]) -> Self {
         let alone = has_behind.then(|| layers.of(2));
+        let with_obstacles = has_solids.then(|| layers.of(2 + usize::from(has_behind)));
         let (marks, all, stride) = (layers.of(0), layers.of(1), layers.stride());
-        let depths = Self { panel, marks, all, alone, stride, plates: Vec::new() };
+        let depths = Self { panel, marks, all, alone, with_obstacles, stride, plates: Vec::new() };
         let panes = panel.obstacles.panes.iter().filter(|pane| !pane.grid);
         Self { plates: panes.filter_map(|pane| depths.plate(pane)).collect(), ..depths }
     }
@@ -118,6 +121,16 @@ impl<'a> Depths<'a> {
         (DVec2::new(left, top) + share * DVec2::new(width, height)).extend(depth)
     }
 
+    /// The part of a line of a body that plates and solid obstacles in front of it leave visible.
+    fn through_obstacles(&self, at: &Sample) -> f32 {
+        let [left] = mean(|tap| {
+            let middle = at.middle + tap;
+            let is_before = self.obstacle(middle) > 0.0;
+            [if is_before { 1.0 - SOLID_OVER_BODIES * (1.0 - at.visible(self.depth(middle))) } else { 1.0 }]
+        });
+        left * self.through_plates(at)
+    }
+
     /// The part of a line that plates in front of it leave visible.
     fn through_plates(&self, at: &Sample) -> f32 {
         let is_before = |plate: &&Plate| {
@@ -138,9 +151,14 @@ impl<'a> Depths<'a> {
         within(at.y, top, height) * self.stride + within(at.x, left, width)
     }
 
-    /// The depth of bodies at a point: 0 on the ground.
-    pub(super) fn depth(&self, at: Vec2) -> f32 {
+    /// The depth of bodies at a point: 0 elsewhere.
+    pub(super) fn depth_of_bodies(&self, at: Vec2) -> f32 {
         self.all[self.pixel(at)]
+    }
+
+    /// The depth of bodies and solid obstacles at a point: 0 on the ground.
+    pub(super) fn depth(&self, at: Vec2) -> f32 {
+        self.with_obstacles.unwrap_or(self.all)[self.pixel(at)]
     }
 
     /// The depth of turned-over elements alone.
@@ -148,12 +166,14 @@ impl<'a> Depths<'a> {
         self.alone.map_or(0.0, |depths| depths[self.pixel(at)])
     }
 
-    /// The opacity of an obstacle at a point; 0 on bodies and ground.
+    /// The opacity of an obstacle at a point, without what bodies behind it take of it; 0 where none is before bodies and ground.
     fn obstacle(&self, at: Vec2) -> f32 {
-        match self.marks[self.pixel(at)][3] {
-            u8::MAX => 0.0,
-            opacity => f32::from(opacity) / 254.0,
+        let bodies = self.depth_of_bodies(at);
+        if self.depth(at) <= bodies {
+            return 0.0;
         }
+        let whole = if bodies > 0.0 { 254.0 * SOLID_OVER_BODIES } else { 254.0 };
+        (f32::from(self.marks[self.pixel(at)][3]) / whole).min(1.0)
     }
 
     pub(super) fn distance(&self, depth: f32) -> f32 {
@@ -168,18 +188,17 @@ impl<'a> Depths<'a> {
         Some(Segment(shares.map(|share| from.lerp(to, share).as_vec3())))
     }
 
-    /// The visibility of an edge, and the part of it behind a body.
-    fn edge(&self, at: &Sample) -> [f32; 2] {
+    /// The visibility of an edge among depths, and the part of it behind a body.
+    fn edge(&self, at: &Sample, depth: fn(&Self, Vec2) -> f32) -> [f32; 2] {
         // A face seen at a grazing angle has points in front of its edge a pixel nearer to the viewer. So the farther side
         // counts.
         let across = 0.75 * at.along.perp();
         mean(|tap| {
             let middle = at.middle + tap;
-            let beside = [self.depth(middle + across), self.depth(middle - across)];
-            let farthest = beside.into_iter().filter(|&depth| depth > 0.0).fold(self.depth(middle), f32::min);
+            let beside = [depth(self, middle + across), depth(self, middle - across)];
+            let farthest = beside.into_iter().filter(|&depth| depth > 0.0).fold(depth(self, middle), f32::min);
             let seen = at.visible(farthest);
-            // Obstacles hide all edges.
-            [seen, if seen < 1.0 && self.obstacle(middle) > 0.0 { 0.0 } else { 1.0 - seen }]
+            [seen, 1.0 - seen]
         })
     }
 
@@ -192,12 +211,14 @@ impl<'a> Depths<'a> {
         let across = normal * (0.9 + reach * self.panel.sight.line_scale);
         let (soft, distance) = (self.panel.sight.soft, self.distance(at.depth));
         let step = STEP * soft;
+        // Bodies are seen through obstacles.
+        let depth = if of_obstacle { Self::depth } else { Self::depth_of_bodies };
         mean(|tap| {
             let middle = at.middle + tap;
-            let here = self.depth(middle);
+            let here = depth(self, middle);
             let places = [middle + across, middle - across];
-            let sides = [self.depth(places[0]), self.depth(places[1])];
-            let obstacles = [self.obstacle(places[0]) > 0.0, self.obstacle(places[1]) > 0.0];
+            let sides = places.map(|place| depth(self, place));
+            let obstacles = places.map(|place| of_obstacle && self.obstacle(place) > 0.0);
             let (nearer, farther) = (sides[0].max(sides[1]), sides[0].min(sides[1]));
             // Surfaces that end in a contour are seen at a grazing angle, and come much nearer within a pixel.
             let covered = distance - self.distance(farther.max(here.min(nearer)));
@@ -210,19 +231,17 @@ impl<'a> Depths<'a> {
                 });
                 shown = if obstacles.contains(&true) { free[0] * free[1] } else { 0.0 };
             }
-            // Obstacles hide all contours behind them.
-            let clear = if !of_obstacle && self.obstacle(middle) > 0.0 { at.visible(here) } else { 1.0 };
             let mut outline = 0.0;
             if farther <= 0.0 {
                 // Background beside it: part of the outline. A fold of the surface that covers it slightly must be very close.
                 let close = normal * if sides[0] <= sides[1] { 0.9 } else { -0.9 };
-                outline = if self.depth(middle + close) <= 0.0 { 1.0 } else { shown };
+                outline = if depth(self, middle + close) <= 0.0 { 1.0 } else { shown };
             }
             // Where one object ends in front of another, a contour is drawn at any distance.
             let apart = self.distance(farther) - self.distance(nearer);
             let deep = if obstacles[0] == obstacles[1] { smooth(apart, 0.8 * step, 1.2 * step) } else { 1.0 };
             let stepped = (1.0 - outline) * shown * deep;
-            [clear * outline, clear * stepped, clear * (1.0 - outline - stepped)]
+            [outline, stepped, 1.0 - outline - stepped]
         })
     }
 
@@ -232,12 +251,12 @@ impl<'a> Depths<'a> {
         let faded = || TAPS.map(|tap| self.obstacle(at.middle + 4.0 * tap)).into_iter().fold(0.0, f32::max);
         let opacities = match line.kind {
             LineKind::Edge | LineKind::Bar => {
-                let [seen, behind] = self.edge(at);
+                let [seen, behind] = self.edge(at, Self::depth_of_bodies);
                 [line.strength * behind, seen, 0.0]
             }
-            LineKind::ObstacleEdge => [0.0, self.edge(at)[0] * faded(), 0.0],
+            LineKind::ObstacleEdge => [0.0, self.edge(at, Self::depth)[0] * faded(), 0.0],
             LineKind::AlarmEdge => {
-                let [seen, behind] = self.edge(at);
+                let [seen, behind] = self.edge(at, Self::depth_of_bodies);
                 // Turned-over elements hide more of a line than others.
                 let [free] = mean(|tap| [at.visible(self.depth_alone(at.middle + tap))]);
                 let [visible, behind_others, behind_these] = ALARM_ALPHAS;
@@ -263,21 +282,24 @@ impl<'a> Depths<'a> {
                 [step, outline, hidden * (smallness + ends * (1.0 - smallness))]
             }
         };
-        let left = self.through_plates(at);
+        let is_of_obstacle = matches!(line.kind, LineKind::ObstacleEdge | LineKind::ObstacleContour);
+        let left = if is_of_obstacle { self.through_plates(at) } else { self.through_obstacles(at) };
         opacities.map(|opacity| level(left * opacity))
     }
 
-    /// A coloured line.
-    fn stroke(&self, stroke: &Stroke, alpha: f32, left: impl Fn(&Sample) -> f32, items: &mut Vec<Item>) {
+    /// A coloured line of a body, or an edge of a plate.
+    fn stroke(&self, stroke: &Stroke, alpha: f32, is_plate: bool, items: &mut Vec<Item>) {
         let Some(segment) = self.segment(stroke.ends, self.panel.viewport, NEARER) else { return };
         let behind = f32::from(stroke.behind) / 255.0;
+        let depth = if is_plate { Self::depth } else { Self::depth_of_bodies };
+        let left = |at: &Sample| if is_plate { 1.0 } else { self.through_obstacles(at) };
         let looks: Vec<_> = segment
             .samples()
             .map(|(at, share)| {
                 let across = 2.0 * at.along.perp();
                 let [seen, inside] = mean(|tap| {
-                    let here = self.depth(at.middle + tap);
-                    let is_inside = [across, -across].iter().all(|way| self.depth(at.middle + tap + *way) > 0.0);
+                    let here = depth(self, at.middle + tap);
+                    let is_inside = [across, -across].iter().all(|way| depth(self, at.middle + tap + *way) > 0.0);
                     [at.visible(here), if here > 0.0 && is_inside { 1.0 } else { 0.0 }]
                 });
                 let [from, to] = stroke.colours;
@@ -322,7 +344,7 @@ impl<'a> Depths<'a> {
         let shown = |depth: f32| 0.5 + 0.5 * (front - depth) / (radius.max(FADED) * depth.max(1e-9));
         let around = [Vec2::ZERO, Vec2::X, -Vec2::X, Vec2::Y, -Vec2::Y];
         let [seen] = mean(|tap| {
-            let shown = around.map(|way| shown(self.depth(middle + tap + 1.5 * way)).clamp(0.0, 1.0));
+            let shown = around.map(|way| shown(self.depth_of_bodies(middle + tap + 1.5 * way)).clamp(0.0, 1.0));
             [shown.iter().sum::<f32>() / around.len() as f32]
         });
         Item::rimmed(middle.as_dvec2(), bead.radius.into(), bead.colour, bead.rim).faded(seen.into())
@@ -453,13 +475,12 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
             add(&path, width, colour, alpha * level as f32 / LEVELS as f32, &mut items);
         }
     }
-    let left = |at: &Sample| depths.through_plates(at);
-    panel.strokes.iter().for_each(|stroke| depths.stroke(stroke, 1.0, left, &mut items));
+    panel.strokes.iter().for_each(|stroke| depths.stroke(stroke, 1.0, false, &mut items));
     items.extend(panel.beads.iter().filter_map(|bead| depths.bead(bead)));
     for &ends in &panel.obstacles.edges {
         let (colours, width) = ([palette.pane_edge; 2], PLATE_EDGE * panel.sight.line_scale);
         let edge = Stroke { ends, colours, second: Second::None, behind: 0, width };
-        depths.stroke(&edge, PLATE_EDGE_ALPHA, |_| 1.0, &mut items);
+        depths.stroke(&edge, PLATE_EDGE_ALPHA, true, &mut items);
     }
     (!items.is_empty()).then(|| Item::inside(panel.viewport, items))
 }

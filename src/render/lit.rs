@@ -1,9 +1,8 @@
 //! Lit bodies in space, with their floors, obstacles and lines, in this order:
 //!
 //! 1. `surface`: turned-over elements, alone, to be seen through the body, and as surfaces of the body.
-//! 2. `surface`: other elements; `ground`: the floor with its grid and its shadows, where no body is; `surface`: solid
-//!    obstacles.
-//! 3. `pane`: transparent obstacles, less where bodies lie behind them.
+//! 2. `surface`: other elements; `ground`: the floor with its grid and its shadows, where no body is.
+//! 3. `surface`: solid obstacles, less where bodies lie behind them; their depths are kept apart from those of bodies. `pane`: transparent obstacles, less where bodies lie behind them.
 //! 4. `border` smooths pixels that lines between two colours cross, and `line` draws edges, contours, springs and nodes. Both
 //!    need the depths of the picture, which are read back, and no device.
 //!
@@ -12,7 +11,7 @@
 use super::pane::Panes;
 use super::panel::{self, Panels};
 use super::surface::{Set, Surfaces};
-use super::target::{Behind, Layouts, Target, Targets};
+use super::target::{Behind, Layouts, Solids, Target, Targets};
 use super::{RenderError, border, ground, line};
 use crate::gpu::{Gpu, Pending, ReadBack};
 use crate::picture::{Item, Picture};
@@ -31,6 +30,7 @@ pub(super) struct Lit {
     /// Made when first needed.
     panes: Option<Panes>,
     behind: Option<Behind>,
+    solids: Option<Solids>,
     read_back: ReadBack,
 }
 
@@ -53,6 +53,7 @@ impl Lit {
             targets: Targets::new(gpu, &layouts, size),
             panes: None,
             behind: None,
+            solids: None,
             read_back: ReadBack::new(size),
             layouts,
             panels,
@@ -67,6 +68,9 @@ impl Lit {
         let Self { gpu, size, layouts, .. } = self;
         if self.behind.is_none() && picture.panels.iter().any(panel::has_behind) {
             self.behind = Some(Behind::new(gpu, layouts, *size));
+        }
+        if self.solids.is_none() && picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty()) {
+            self.solids = Some(Solids::new(gpu, layouts, *size));
         }
         self.panels.write(gpu, picture);
         self.surfaces.write(gpu, &self.panels, layouts, picture);
@@ -98,15 +102,25 @@ impl Lit {
             }
             self.surfaces.draw(&mut pass, &self.panels, picture, Set::Sound);
             self.grounds.draw(&mut pass, &self.panels, picture);
+        }
+        let mut before = &self.targets.drawn;
+        if let Some(solids) = &self.solids {
+            let [from, to] = [depth, &solids.depth].map(|target| target.texture.as_image_copy());
+            commands.copy_texture_to_texture(from, to, depth.texture.size());
+            let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], Some((&solids.depth, LoadOp::Load)));
+            pass.set_bind_group(1, before, &[]);
             self.surfaces.draw(&mut pass, &self.panels, picture, Set::Obstacles);
+            before = &solids.drawn;
         }
         if let Some(panes) = panes {
             let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], None);
-            pass.set_bind_group(1, &self.targets.drawn, &[]);
+            pass.set_bind_group(1, before, &[]);
             panes.draw(&mut pass, &self.panels, picture);
         }
-        let textures = [Some(drawn), Some(depth), self.behind.as_ref().map(|behind| &behind.depth)];
-        let textures: Vec<_> = textures.into_iter().flatten().map(|target| &target.texture).collect();
+        let others =
+            [self.behind.as_ref().map(|behind| &behind.depth), self.solids.as_ref().map(|solids| &solids.depth)];
+        let textures = [drawn, depth].into_iter().chain(others.into_iter().flatten());
+        let textures: Vec<_> = textures.map(|target| &target.texture).collect();
         self.read_back.submit(gpu, commands, &textures)
     }
 
@@ -121,7 +135,7 @@ impl Lit {
         picture: &Picture,
         pixels: &mut Vec<u8>,
     ) -> Result<Vec<Item>, RenderError> {
-        let has_behind = self.behind.is_some();
+        let has = [self.behind.is_some(), self.solids.is_some()];
         Ok(self.read_back.collect(&self.gpu, pending, |layers| {
             let rows = layers.of::<u8>(0).chunks_exact(4 * layers.stride());
             rows.for_each(|row| pixels.extend_from_slice(&row[..4 * self.size[0] as usize]));
@@ -129,7 +143,7 @@ impl Lit {
             pixels.as_chunks_mut::<4>().0.iter_mut().for_each(|pixel| pixel[3] = u8::MAX);
             let mut items = Vec::new();
             for panel in picture.panels.iter().filter(|panel| !panel.sight.flat && !panel.viewport[2..].contains(&0)) {
-                let depths = line::Depths::new(panel, layers, has_behind);
+                let depths = line::Depths::new(panel, layers, has);
                 border::smooth(&depths, pixels, self.size[0] as usize);
                 items.extend(line::item(&depths, picture));
             }

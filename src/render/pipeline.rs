@@ -23,6 +23,8 @@ pub(super) struct Recipe<'a> {
     pub(super) writes: wgpu::ColorWrites,
     /// The test of depth, if there is one, and whether depths are written.
     pub(super) depth: Option<(wgpu::CompareFunction, bool)>,
+    /// Faces that are left out.
+    pub(super) cull: Option<wgpu::Face>,
 }
 
 impl<'a> Recipe<'a> {
@@ -39,6 +41,7 @@ impl<'a> Recipe<'a> {
             blend: None,
             writes: wgpu::ColorWrites::ALL,
             depth: Some((wgpu::CompareFunction::Greater, true)),
+            cull: None,
         }
     }
 
@@ -59,7 +62,7 @@ impl<'a> Recipe<'a> {
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: self.vertices,
             },
-            primitive: wgpu::PrimitiveState { topology: self.topology, ..Default::default() },
+            primitive: wgpu::PrimitiveState { topology: self.topology, cull_mode: self.cull, ..Default::default() },
             depth_stencil: self.depth.map(|(compare, is_written)| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(is_written),

@@ -60,6 +60,9 @@ impl Variant {
     }
 }
 
+/// The label of the pipeline of solid obstacles.
+const OBSTACLES: &str = "obstacles";
+
 /// The sets of surfaces of a panel, in stored order.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Set {
@@ -114,7 +117,7 @@ impl Surfaces {
             [
                 add(sound, &mut std::iter::once(&panel.sound)),
                 add("turned over", &mut std::iter::once(&panel.turned_over)),
-                add("obstacles", &mut panel.obstacles.solids.iter().map(|solid| &solid.mesh)),
+                add(OBSTACLES, &mut panel.obstacles.solids.iter().map(|solid| &solid.mesh)),
             ]
         });
         self.ranges = ranges.collect();
@@ -126,12 +129,12 @@ impl Surfaces {
             // Panels share pipelines.
             self.pipelines.entry((*label, self.variant)).or_insert_with(|| {
                 let module = module.get_or_init(|| shader(gpu, "surface", &[&self.variant.parts()]));
-                made(gpu, [&panels.layout, &layouts.behind], module, label)
+                made(gpu, [&panels.layout, &layouts.behind, &layouts.drawn], module, label)
             });
         }
     }
 
-    /// Draws a set of all panels. The sets behind must have been drawn, and be bound.
+    /// Draws a set of all panels. What lies behind it must have been drawn, and be bound: turned-over elements, or bodies behind obstacles.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture, set: Set) {
         pass.set_vertex_buffer(0, self.corners.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
@@ -146,22 +149,24 @@ impl Surfaces {
     }
 }
 
-/// The pipeline of a label, with the layouts of panels and of what lies behind surfaces.
+/// The pipeline of a label, with the layouts of panels, of turned-over elements behind surfaces, and of bodies behind obstacles.
 fn made(
     gpu: &Gpu,
-    groups: [&wgpu::BindGroupLayout; 2],
+    [panels, turned_over, bodies]: [&wgpu::BindGroupLayout; 3],
     module: &wgpu::ShaderModule,
     label: &'static str,
 ) -> wgpu::RenderPipeline {
     // Opacities of obstacles stay in the picture, as marks.
     let over = wgpu::BlendState { alpha: wgpu::BlendComponent::REPLACE, ..wgpu::BlendState::ALPHA_BLENDING };
-    let (entries, groups, targets, blend) = match label {
+    let (entries, groups, targets, blend): (_, &[_], _, _) = match label {
         // As seen through the body, and as surfaces of it.
-        "turned over" => (["alarm_corner", "alarm_surface"], &groups[..1], 2, None),
-        "sound, before others" => (["sound_corner", "sound_before"], &groups[..], 1, None),
-        "obstacles" => (["obstacle_corner", "obstacle_surface"], &groups[..1], 1, Some(over)),
-        _ => (["sound_corner", "sound_surface"], &groups[..1], 1, None),
+        "turned over" => (["alarm_corner", "alarm_surface"], &[panels], 2, None),
+        "sound, before others" => (["sound_corner", "sound_before"], &[panels, turned_over], 1, None),
+        OBSTACLES => (["obstacle_corner", "obstacle_surface"], &[panels, bodies], 1, Some(over)),
+        _ => (["sound_corner", "sound_surface"], &[panels], 1, None),
     };
+    // Of an obstacle that bodies are seen through, one layer lies over them.
+    let cull = (label == OBSTACLES).then_some(wgpu::Face::Back);
     let vertices = &[Some(for_vertices::<Corner>(&ATTRIBUTES))];
-    Recipe { groups, vertices, targets, blend, ..Recipe::new(label, module, entries) }.build(gpu)
+    Recipe { groups, vertices, targets, blend, cull, ..Recipe::new(label, module, entries) }.build(gpu)
 }

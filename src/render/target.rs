@@ -33,7 +33,7 @@ impl Layouts {
     }
 }
 
-/// The picture and its depths.
+/// The picture and the depths of its bodies.
 #[derive(Debug)]
 pub(super) struct Targets {
     pub(super) picture: Target,
@@ -51,6 +51,22 @@ impl Targets {
             drawn: bind(gpu, "drawn", &layouts.drawn, &drawn),
             depth,
         }
+    }
+}
+
+/// The depths of bodies and of the solid obstacles before them.
+#[derive(Debug)]
+pub(super) struct Solids {
+    pub(super) depth: Target,
+    /// The depth, bound to be read.
+    pub(super) drawn: wgpu::BindGroup,
+}
+
+impl Solids {
+    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2]) -> Self {
+        let depth = Target::new(gpu, "depth with obstacles", size, DEPTH_FORMAT);
+        let drawn = [(0, wgpu::BindingResource::TextureView(&depth.view))];
+        Self { drawn: bind(gpu, "drawn with obstacles", &layouts.drawn, &drawn), depth }
     }
 }
 
