@@ -18,8 +18,8 @@ use std::sync::Arc;
 
 /// The name of counts.
 const TURNED_OVER: &str = "turned over";
-/// The text in place of a number for a run that diverged.
-const DIVERGED: &str = "diverged";
+/// The text in place of a number for a run that diverges: the same before and after.
+pub(in crate::picture) const DIVERGES: &str = "diverges";
 /// The text after the end of a recording: long, short.
 pub(in crate::picture) const RECORDING_ENDS: &str = "recording ends";
 const ENDED: &str = "ended";
@@ -264,10 +264,10 @@ impl Writer<'_> {
     }
 
     /// The clock with its label, upper right.
-    pub(super) fn clock(&mut self, panel: Rectangle, time: f64, label: &str) {
+    pub(super) fn clock(&mut self, panel: Rectangle, time: &str, label: &str) {
         let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let time = self.fonts.shortened(&number::time(time), Weight::Regular, title, room.width());
+        let time = self.fonts.shortened(time, Weight::Regular, title, room.width());
         self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
         let label = self.clock_label(panel, label);
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
@@ -281,13 +281,13 @@ impl Writer<'_> {
     }
 
     /// The clock followed by its label, at the right of a picture of a width, with its baseline at a height (px).
-    pub(super) fn clock_alone(&mut self, around: Scale, [width, baseline]: [f64; 2], time: f64, label: &str) {
+    pub(super) fn clock_alone(&mut self, around: Scale, [width, baseline]: [f64; 2], time: &str, label: &str) {
         let (right, palette) = (width - self.scale.margin(), self.palette);
         let room = right - self.scale.margin() - self.clock_width(around, "") - around.gap();
         let label = self.fonts.shortened(label, Weight::Regular, around.caption(), room);
         self.right(&label, Weight::Regular, around.caption(), palette.second_text, right, baseline);
         let beside = self.clock_width(around, &label) - self.clock_width(around, "");
-        self.right(&number::time(time), Weight::Regular, around.title(), palette.text, right - beside, baseline);
+        self.right(time, Weight::Regular, around.title(), palette.text, right - beside, baseline);
     }
 
     /// Tally and count, lower left, each between two places from the left margin (px). With names of bodies the elements of
@@ -343,7 +343,7 @@ impl Writer<'_> {
     /// The widths of the widest number at the lower right, diverged or not, in its longest and in its shortest wording
     /// (px).
     pub(super) fn number_widths(&self, usual: &Number) -> [f64; 2] {
-        let diverged = self.fonts.width(DIVERGED, Weight::SemiBold, self.scale.title());
+        let diverged = self.fonts.width(DIVERGES, Weight::SemiBold, self.scale.title());
         [usual.wordings.first(), usual.wordings.last()]
             .map(|texts| texts.map_or(0.0, |texts| self.number_width(usual, texts)).max(diverged).ceil())
     }
@@ -483,30 +483,37 @@ pub(super) fn letter(at: usize) -> String {
     if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
 }
 
-/// Replaces the number of a run that diverges within the shown time: when it diverges, and how much wider it becomes.
-pub(super) fn divergence(run: &RunFrame) -> Option<Number> {
+/// Replaces the number of a run that diverges within the shown time of a scene that lasts `span` (s): when it diverges, and how much wider it
+/// becomes.
+pub(super) fn divergence(run: &RunFrame, span: f64) -> Option<Number> {
     let Status::Diverged(Divergence { time, is_end, .. }) = run.shown().status else { return None };
-    let (loud, at) = (diverged(run), format!("at {}", number::time(time)));
-    let wider = wider(run).map(|wider| [format!("then {wider}"), wider].map(|wider| [format!("{loud} {at}"), wider]));
+    let (loud, at) = (diverges(run), format!("at {}", number::time(time, span)));
+    let shown = number::time(run.shown().time, span);
+    let long = |times| format!("shown at {shown}, then {times} times wider");
+    let wider = times_wider(run).map(long).into_iter().chain(wider(run));
+    let wider: Vec<_> = wider.map(|wider| [format!("{loud} {at}"), wider]).collect();
     let alone = [[loud.to_owned(), at.clone()], [loud.to_owned(), String::new()]];
     let short = [[ENDED.to_owned(), at], [ENDED.to_owned(), String::new()]].into_iter().filter(|_| is_end);
-    let wordings = wider.into_iter().flatten().chain(alone).chain(short).collect();
+    let wordings = wider.into_iter().chain(alone).chain(short).collect();
     Some(Number { widest: String::new(), wordings, is_loud: true })
 }
 
-/// The present or past tense for a run that diverges, at the time of a frame; or that its recording ends.
-pub(super) fn diverged(run: &RunFrame) -> &'static str {
-    match (run.snapshot.status, run.shown().status) {
-        (_, Status::Diverged(Divergence { is_end: true, .. })) => RECORDING_ENDS,
-        (Status::Ok, _) => "diverges",
-        _ => DIVERGED,
+/// The word for a run that diverges or whose recording ends.
+pub(super) fn diverges(run: &RunFrame) -> &'static str {
+    match run.shown().status {
+        Status::Diverged(Divergence { is_end: true, .. }) => RECORDING_ENDS,
+        _ => DIVERGES,
     }
 }
 
 /// The final width of a run relative to the shown width, in words; `None` if they are similar.
 pub(super) fn wider(run: &RunFrame) -> Option<String> {
+    times_wider(run).map(|times| format!("{times} times wider than shown"))
+}
+
+fn times_wider(run: &RunFrame) -> Option<String> {
     let times = run.last_fit.as_ref()?.times_wider;
-    (times >= 1.5).then(|| format!("{} times wider than shown", number::times(times)))
+    (times >= 1.5).then(|| number::times(times))
 }
 
 /// The number at the lower right of a run that has not diverged, of a body of an extent (m).

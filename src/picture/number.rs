@@ -1,13 +1,23 @@
 //! Numbers as text: few digits, a suitable unit, a true minus sign.
 
 use super::text::THIN_SPACE;
-use crate::reading::captions::{prefix as prefix_of, rounded};
+use crate::reading::captions::{prefix as prefix_of, quantity, rounded};
 use crate::sim::Diagnostic;
 
-/// A time (s): milliseconds below a second, then seconds with two or one decimals.
-pub(super) fn time(seconds: f64) -> String {
+/// Shorter scenes have a clock with three digits (s).
+const LEAST_SPAN: f64 = 0.1;
+
+/// A time (s) in a scene that lasts `span` (s): milliseconds below a second, then seconds with two or one decimals. In a short scene all times
+/// have one unit and so many decimals that its end has three digits.
+pub(super) fn time(seconds: f64, span: f64) -> String {
     let milliseconds = (seconds * 1e3).round();
-    let text = if milliseconds.abs() < 1e3 {
+    let text = if span > 0.0 && span < LEAST_SPAN {
+        let (factor, prefix) = prefix_of(span);
+        let decimals = if span >= 100.0 * factor { 0 } else { 2 - usize::from(span >= 10.0 * factor) };
+        format!("{:.decimals$} {prefix}s", seconds / factor)
+    } else if milliseconds == 0.0 && seconds != 0.0 {
+        quantity(rounded(seconds, 1), "s")
+    } else if milliseconds.abs() < 1e3 {
         format!("{} ms", milliseconds + 0.0)
     } else if seconds.abs() < 9.995 {
         format!("{seconds:.2} s")
@@ -47,13 +57,9 @@ pub(super) fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> Strin
 /// Shorter times are written in milliseconds (s).
 const LEAST_SECOND: f64 = 0.999_95;
 
-/// The factor and the prefix of the unit of all lengths in pictures of a body of a size (m).
+/// The factor and the prefix of the unit of all lengths in pictures of a body of a size (m): metres from 30 m on, millimetres from 30 mm on.
 pub(super) fn metre(extent: f64) -> (f64, &'static str) {
-    match extent {
-        extent if extent >= 30.0 => (1.0, ""),
-        extent if extent >= 0.03 => (1e-3, "m"),
-        _ => (1e-6, "µ"),
-    }
+    prefix_of(extent / 30.0)
 }
 
 /// A count.
@@ -79,7 +85,7 @@ pub(super) fn length(metres: f64, extent: f64) -> String {
     match value.abs() {
         size if size < 9.95 => with_minus(format!("{value:.1} {unit}")),
         size if size < 99_999.5 => with_minus(format!("{value:.0} {unit}")),
-        _ => with_minus(format!("{value:.1e} {unit}")),
+        _ => with_minus(quantity(metres, "m")),
     }
 }
 
@@ -95,9 +101,7 @@ pub(super) fn value(diagnostic: Diagnostic, value: f64, extent: f64) -> String {
 
 /// A value with a unit.
 pub(super) fn with_unit(value: f64, unit: &str) -> String {
-    let value = rounded(value, 3);
-    let plain = value == 0.0 || (1e-3..1e5).contains(&value.abs());
-    with_minus(if plain { format!("{value} {unit}") } else { format!("{value:e} {unit}") })
+    with_minus(quantity(value, unit))
 }
 
 /// A ratio around 1, with two decimals.
@@ -132,20 +136,6 @@ pub(super) fn times(value: f64) -> String {
     if whole < 999.5 { whole.to_string() } else { format!("{whole:.0e}") }
 }
 
-/// A power of ten, typeset.
-pub(super) fn power_of_ten(power: i32) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    match power {
-        0 => "1".to_owned(),
-        1 => "10".to_owned(),
-        _ => {
-            let digits = power.to_string();
-            let raised = digits.chars().map(|sign| sign.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
-            format!("10{}", raised.collect::<String>())
-        }
-    }
-}
-
 /// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.
 pub(super) fn round_below(value: f64) -> f64 {
     let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));
@@ -175,7 +165,7 @@ pub(super) fn round_length(metres: f64, extent: f64) -> String {
     let (factor, prefix) = if suits { (factor, prefix) } else { prefix_of(metres) };
     let value = metres / factor;
     let plain = (0.01..1e4).contains(&value);
-    if plain { format!("{} {prefix}m", rounded(value, 3)) } else { with_minus(format!("{value:.0e} {prefix}m")) }
+    if plain { format!("{} {prefix}m", rounded(value, 3)) } else { with_minus(quantity(metres, "m")) }
 }
 
 #[cfg(test)]
@@ -189,7 +179,22 @@ mod tests {
             "0 ms", "70 ms", "17 ms", "999 ms", "1.00 s", "1.00 s", "2.35 s", "9.99 s", "10.0 s", "10.0 s", "123.5 s",
             "−20 ms",
         ];
-        assert_eq!(times.map(time), expected);
+        assert_eq!(times.map(|seconds| time(seconds, 200.0)), expected);
+    }
+
+    #[test]
+    fn short_times_keep_their_digits() {
+        assert_eq!([0.0, 2.3e-4, -4e-7].map(|seconds| time(seconds, 3.0)), ["0 ms", "200 µs", "−400 ns"]);
+        assert_eq!([0.0, 4.02e-4, 1e-3].map(|seconds| time(seconds, 1e-3)), ["0.00 ms", "0.40 ms", "1.00 ms"]);
+        assert_eq!([0.0, 0.0123, 0.05].map(|seconds| time(seconds, 0.05)), ["0.0 ms", "12.3 ms", "50.0 ms"]);
+        assert_eq!([7.3e-8, 2e-7].map(|seconds| time(seconds, 2e-7)), ["73 ns", "200 ns"]);
+    }
+
+    #[test]
+    fn values_have_three_digits_in_any_size() {
+        let values = [7.42, 1022.4, 5.2e-17, 3e18, -4e-30].map(|value| with_unit(value, "J"));
+        assert_eq!(values, ["7.42 J", "1.02 kJ", "52 aJ", "3 EJ", "−4×10⁻³⁰ J"]);
+        assert_eq!([with_unit(12_345.0, "kg m/s"), with_unit(3e6, "kg m/s")], ["12\u{2009}300 kg m/s", "3×10⁶ kg m/s"]);
     }
 
     #[test]
@@ -208,7 +213,8 @@ mod tests {
         assert_eq!(length(-1e-9, 0.3), "0.0 mm");
         assert_eq!(length(2.5, 100.0), "2.5 m");
         assert_eq!(length(f64::NAN, 0.3), "∞");
-        assert_eq!(length(1e12, 0.3), "1.0e15 mm");
+        assert_eq!(length(1e12, 0.3), "1 Tm");
+        assert_eq!([length(4e-9, 6e-6), length(2e3, 5e5)], ["4.0 nm", "2.0 km"]);
     }
 
     #[test]
@@ -219,14 +225,9 @@ mod tests {
     #[test]
     fn round_lengths_have_the_unit_of_the_others() {
         let lengths = [0.0123, 0.05, 0.99, 1.0, 2.6, 4000.0, 3e-6, 7e-13, 6e13];
-        let expected = ["10 mm", "50 mm", "500 mm", "1 m", "2 m", "2 km", "2 µm", "5e−4 nm", "5e4 Gm"];
+        let expected = ["10 mm", "50 mm", "500 mm", "1 m", "2 m", "2 km", "2 µm", "500 fm", "50 Tm"];
         assert_eq!(lengths.map(|length| round_length(round_below(length), 0.3)), expected);
         assert_eq!((round_length(0.5, 50.0), round_length(0.5, 0.3)), ("0.5 m".to_owned(), "500 mm".to_owned()));
-    }
-
-    #[test]
-    fn powers_are_written_with_raised_digits() {
-        assert_eq!([-12, -3, 0, 1, 4].map(power_of_ten), ["10⁻¹²", "10⁻³", "1", "10", "10⁴"]);
     }
 
     #[test]

@@ -67,7 +67,7 @@ fn limits(properties: &Properties) -> String {
         ("bending", Setting::Number(factor, _)) if factor != 1.0 => format!(", β = {}", fraction(factor)),
         ("breaks_at", Setting::Number(strain, _)) => format!(", breaks at {strain}"),
         ("limit", Setting::Number(limit, _)) => format!(", elongation below {limit} of the length"),
-        ("bulk", Setting::Number(bulk, unit)) => format!(", κ = {bulk:e} {unit}"),
+        ("bulk", Setting::Number(bulk, unit)) => format!(", κ = {}", quantity(bulk, unit)),
         _ => String::new(),
     };
     properties.parameters.iter().map(word).collect()
@@ -182,8 +182,21 @@ pub(crate) fn typed(choice: &impl Serialize) -> String {
 }
 
 /// SI prefixes and their factors.
-const PREFIXES: [(f64, &str); 7] =
-    [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
+const PREFIXES: [(f64, &str); 13] = [
+    (1e18, "E"),
+    (1e15, "P"),
+    (1e12, "T"),
+    (1e9, "G"),
+    (1e6, "M"),
+    (1e3, "k"),
+    (1.0, ""),
+    (1e-3, "m"),
+    (1e-6, "µ"),
+    (1e-9, "n"),
+    (1e-12, "p"),
+    (1e-15, "f"),
+    (1e-18, "a"),
+];
 
 /// The SI prefix that leaves one to three digits before the decimal point, and its factor.
 pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
@@ -191,15 +204,44 @@ pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
     PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
 
-/// A quantity with three significant digits and a prefix of its unit: `315 mm`.
+/// Whether a unit takes a prefix: `kkg m/s` would be wrong.
+pub(crate) fn takes_prefix(unit: &str) -> bool {
+    !unit.is_empty() && !["kg", "rad"].iter().any(|without| unit.starts_with(without))
+}
+
+/// A quantity with three significant digits and, where its unit takes one, a prefix: `315 mm`. Beyond all prefixes it has a power of ten.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
+    let plain = if takes_prefix(unit) { 1e-18..1e21 } else { 1e-3..1e5 };
+    let value = rounded(value, 3);
     match value.abs() {
         0.0 => format!("0 {unit}"),
-        1e-9..1e12 => {
-            let (factor, prefix) = prefix(value.abs());
+        size if plain.contains(&size) => {
+            let (factor, prefix) = if takes_prefix(unit) { prefix(size) } else { (1.0, "") };
             format!("{} {prefix}{unit}", rounded(value / factor, 3))
         }
-        _ => format!("{value:.2e} {unit}"),
+        size if size.is_finite() => format!("{} {unit}", scientific(value)),
+        _ => format!("{value} {unit}"),
+    }
+}
+
+/// A number as a factor and, unless that is 1, a power of ten: `3×10⁵`.
+pub(crate) fn scientific(value: f64) -> String {
+    let text = format!("{value:e}");
+    let (factor, power) = text.split_once('e').unwrap_or((&text, "0"));
+    if power == "0" { factor.to_owned() } else { format!("{factor}×{}", power_of_ten(power.parse().unwrap_or(0))) }
+}
+
+/// A power of ten, typeset.
+pub(crate) fn power_of_ten(power: i32) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    match power {
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        _ => {
+            let digits = power.to_string();
+            let raised = digits.chars().map(|sign| sign.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
+            format!("10{}", raised.collect::<String>())
+        }
     }
 }
 

@@ -60,11 +60,24 @@ fn each_kind_has_its_count() {
 
 #[test]
 fn quantities_have_three_digits_and_a_prefix() {
-    let cases = [(0.0, "0 m"), (0.3149, "315 mm"), (-1234.0, "-1.23 km"), (1e-9, "1 nm"), (1e-17, "1.00e-17 m")];
+    let cases = [
+        (0.0, "0 m"),
+        (0.3149, "315 mm"),
+        (-1234.0, "-1.23 km"),
+        (1e-9, "1 nm"),
+        (1e-17, "10 am"),
+        (2.5e-20, "2.5×10⁻²⁰ m"),
+    ];
     for (value, text) in cases {
         assert_eq!(quantity(value, "m"), text);
     }
     assert_eq!(quantity(f64::NAN, "m"), "NaN m");
+    assert_eq!([quantity(1234.0, "kg m/s"), quantity(1e5, "Pa")], ["1230 kg m/s", "100 kPa"]);
+}
+
+#[test]
+fn powers_are_written_with_raised_digits() {
+    assert_eq!([-12, -3, 0, 1, 4].map(power_of_ten), ["10⁻¹²", "10⁻³", "1", "10", "10⁴"]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Round numbers along an axis of a chart or a scale of colours.
 
 use crate::picture::number::{self, times_ten, with_minus};
-use crate::reading::captions::{prefix, rounded};
+use crate::reading::captions::{power_of_ten, prefix, rounded, scientific, takes_prefix};
 
 /// The quantity along an axis, which determines its division.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,8 +39,6 @@ pub(in crate::picture) struct Stretch {
 /// curve runs along its border.
 const NEAR: f64 = 0.13;
 const BEYOND: f64 = 0.05;
-/// The units that take an SI prefix; `kkg m/s` would be wrong.
-const WITH_PREFIX: [&str; 2] = ["m/s", "J"];
 
 impl Axis {
     /// An axis between two values, with texts at some of them.
@@ -71,7 +69,7 @@ impl Axis {
         });
         let text = |&(power, digit): &(i32, f64)| match is_plain {
             true => times_ten(digit, f64::from(power)).to_string(),
-            false => number::power_of_ten(power),
+            false => power_of_ten(power),
         };
         Self(vec![Stretch {
             range: [low, high].map(libm::exp10),
@@ -104,7 +102,7 @@ impl Stretch {
             _ if unit == "m" => number::metre(extent),
             // Kiloseconds are not in use.
             _ if unit == "s" => prefix(largest.min(1.0)),
-            _ if WITH_PREFIX.contains(&unit) => prefix(largest),
+            _ if takes_prefix(unit) => prefix(largest),
             _ => (1.0, ""),
         };
         let unit = format!("{prefix}{unit}");
@@ -128,7 +126,7 @@ impl Stretch {
             // Adjacent numbers may have different numbers of decimals.
             _ if value == 0.0 => "0".to_owned(),
             true => with_minus(format!("{value:.*}", division.decimals)),
-            false => with_minus(format!("{:e}", rounded(value, digits))),
+            false => with_minus(scientific(rounded(value, digits))),
         };
         Self {
             range: division.range.map(|end| end * factor),

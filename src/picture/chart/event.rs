@@ -4,7 +4,7 @@ use super::ring;
 use super::series::{Series, in_words};
 use crate::colour::Colour;
 use crate::look::Plot;
-use crate::picture::caption::{RECORDING_ENDS, WordRoom, Writer};
+use crate::picture::caption::{DIVERGES, RECORDING_ENDS, WordRoom, Writer};
 use crate::picture::layout::steps::{GAP, NEAR};
 use crate::picture::layout::{Baselines, Rectangle, Scale};
 use crate::picture::number;
@@ -46,7 +46,7 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
     let event = |one: &Series, time: f64, words: String, joint: &str| Event {
         run: one.run,
         time,
-        words: [format!("{words} {joint} {}", number::time(time)), words],
+        words: [format!("{words} {joint} {}", number::time(time, end)), words],
     };
     // First events of all runs come before second ones.
     let mut all: Vec<(usize, Event)> = Vec::new();
@@ -60,7 +60,7 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
             let last = last.filter(|_| one.diverged.is_none());
             own.extend(last.map(|&[time, count]| {
                 // Elements that are no longer turned over may be flat.
-                let words = if count == 0.0 { "none turned over".to_owned() } else { format!("settles at {count}") };
+                let words = if count == 0.0 { "none".to_owned() } else { format!("settles at {count}") };
                 event(one, time, words, "after")
             }));
         } else if let (Some(&[_, start]), Some(&[_, last])) = (one.points.first(), one.points.last()) {
@@ -74,7 +74,7 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
                 event(one, time, format!("{which} {}", value(most)), "at")
             }));
         }
-        let word = if one.is_end { RECORDING_ENDS } else { "diverged" };
+        let word = if one.is_end { RECORDING_ENDS } else { DIVERGES };
         own.extend(one.diverged.map(|time| event(one, time, word.to_owned(), "at")));
         all.extend(own.into_iter().enumerate());
     }
@@ -87,12 +87,9 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
 
 /// The possible events of a run of a scene, in the narrowest words.
 pub(in crate::picture) fn narrowest(plot: &Plot, scene: &Scene) -> Vec<Event> {
-    const AT: f64 = 1e-3;
-    let event = |words: String, joint: &str| Event {
-        run: 0,
-        time: AT,
-        words: [format!("{words} {joint} {}", number::time(AT)), words],
-    };
+    let at = number::time(1e-3 * scene.duration.min(1.0), scene.duration);
+    let event =
+        |words: String, joint: &str| Event { run: 0, time: 0.0, words: [format!("{words} {joint} {at}"), words] };
     if plot.diagnostic() == Some(Diagnostic::TurnedOver) {
         return vec![event("first turned over".to_owned(), "at"), event("settles at 1".to_owned(), "after")];
     }
@@ -195,7 +192,7 @@ mod tests {
         assert_eq!(words(Diagnostic::TurnedOver, &[restless]), ["first turned over at 1.00 s"]);
         let flat = series(0, true, &[[0.0, 0.0], [0.02, 8.0], [0.1, 0.0], [3.0, 0.0]]);
         let told = words(Diagnostic::TurnedOver, &[flat]);
-        assert_eq!(told, ["first turned over at 20 ms", "none turned over after 100 ms"]);
+        assert_eq!(told, ["first turned over at 20 ms", "none after 100 ms"]);
         let many: Vec<_> = (0..20).map(|run| Series { run, ..springs.clone() }).collect();
         assert_eq!(words(Diagnostic::TurnedOver, &many), vec!["first turned over at 20 ms"; MOST]);
     }
@@ -208,7 +205,7 @@ mod tests {
         assert_eq!(words(Diagnostic::VolumeRatio, &[volume]), ["lowest 0.60 at 50 ms"]);
         let rising = series(0, false, &[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]);
         let blown = Series { diverged: Some(0.971), ..rising.clone() };
-        assert_eq!(words(Diagnostic::Kinetic, &[rising, blown]), ["diverged at 971 ms"]);
+        assert_eq!(words(Diagnostic::Kinetic, &[rising, blown]), ["diverges at 971 ms"]);
     }
 
     #[test]

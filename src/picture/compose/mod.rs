@@ -161,6 +161,11 @@ impl<'a> Composer<'a> {
         Writer::new(&self.palette, &self.fonts, scale)
     }
 
+    /// The time of a frame in words.
+    fn clock(&self, frame: &Frame) -> String {
+        number::time(frame.time, self.scene.duration)
+    }
+
     /// Composes one frame.
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
@@ -192,7 +197,7 @@ impl<'a> Composer<'a> {
         }
         let clock = clock_above.and_then(|part| baselines(&layout.parts, part, layout.around).next());
         if let Some(baseline) = clock {
-            writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
+            writer.clock_alone(layout.around, [f64::from(size[0]), baseline], &self.clock(frame), &view.clock);
         }
         let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
         if let Some(((legend, ([_, top, width, _], &panel)), framing)) = legend.zip(place).zip(framings.first()) {
@@ -245,12 +250,13 @@ impl<'a> Composer<'a> {
                 writer.events(viewport, timeline.events_of(run.run), colour, frame.time);
             }
             if has_clock {
-                writer.clock(viewport, frame.time, words.clock_label(layout));
+                writer.clock(viewport, &self.clock(frame), words.clock_label(layout));
             }
             let place = |numeral| numbers.get(numeral).map(|[left, _, width, _]| [left, left + width]);
-            let count = place(NumberPart::Tally).zip(place(NumberPart::Count));
             // The shown state of a run that diverges lacks the present number of turned-over elements.
-            if let Some((place_of_tally, count)) = count.filter(|_| run.shown().status == Status::Ok) {
+            let is_counted = run.shown().status == Status::Ok;
+            let count = place(NumberPart::Tally).zip(place(NumberPart::Count)).filter(|_| is_counted);
+            if let Some((place_of_tally, count)) = count {
                 let tally = &self.bodies(run.run).tally;
                 writer.count(viewport, [place_of_tally, count], (tally, &self.names_of(run.run)), run.shown());
             }
@@ -260,7 +266,9 @@ impl<'a> Composer<'a> {
                 let end = writer.scale_bar(viewport, between, self.bars(viewport, framing, writer.scale));
                 taken = end.unwrap_or(taken);
             }
-            match caption::divergence(run) {
+            match caption::divergence(run, self.scene.duration) {
+                // Without a row for numbers it would lie over the name.
+                Some(_) if layout.written.left_out.contains(&Part::Numbers) => {}
                 Some(divergence) => writer.number(viewport, taken, &divergence),
                 None if labels.number && place(NumberPart::Number).is_some() => {
                     let ratio = self.bodies(run.run).smallest_area_ratio(&run.snapshot);

@@ -1,7 +1,7 @@
 //! The text below the bodies of a contact sheet: tallies, counts and diagnostics, and the key of the tallies.
 
 use super::sheet_layout::SheetLayout;
-use crate::picture::caption::{Writer, diverged, wider};
+use crate::picture::caption::{Writer, diverges, wider};
 use crate::picture::compose::Composer;
 use crate::picture::layout::steps::{BESIDE, NEAR, SHORT};
 use crate::picture::layout::{Part, Scale};
@@ -114,9 +114,9 @@ impl<'a> Below<'a> {
     ) -> Self {
         let (scale, palette) = (writer.scale, writer.palette);
         if let Status::Diverged(divergence) = run.shown().status {
-            let when = format!("{} at {}", diverged(run), number::time(divergence.time));
+            let when = format!("{} at {}", diverges(run), number::time(divergence.time, composer.scene.duration));
             let whole = wider(run).map(|wider| format!("{when}, {wider}"));
-            let mut wordings = whole.into_iter().chain([when, diverged(run).to_owned()]);
+            let mut wordings = whole.into_iter().chain([when, diverges(run).to_owned()]);
             let wide = |text: &String| writer.fonts.width(text, Weight::SemiBold, scale.caption());
             let fitting = wordings.find(|text| wide(text) <= layout.words_width(scale));
             let text = |text| (text, Weight::SemiBold, scale.caption(), palette.text);
