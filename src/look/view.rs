@@ -101,6 +101,7 @@ pub struct View {
     pub edges: EdgeStyle,
     /// The camera. It follows the centre of mass of each run's body. All panels and frames have one scale, at which the
     /// body takes about 60 % of its panel's width at its widest moment, or up to a fifth less to show obstacles near it.
+    /// Where all runs hold or grab nodes throughout, it stands still and sees all that bodies reach, if they need no more than twice the space.
     /// The whole scene is simulated before the first frame is drawn. With a `target` or a `distance` the camera is fixed.
     #[serde(serialize_with = "open")]
     #[schemars(with = "CameraFile")]
@@ -218,7 +219,8 @@ words! {
         /// The number of turned-over elements, or of broken ones in runs that break. With springs that break, an element is in pieces when
         /// those that are left do not hold its nodes together; `broken` in charts and files counts the springs.
         count,
-        /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
+        /// The shape error; in the plane, the smallest area ratio. Divergence is always shown. Also the height (m) of the lowest body above
+        /// the ground, if it is more than half a body's size and the camera follows.
         number,
         /// A scale bar (m), in the first panel; in space it holds at the distance of the camera's target.
         scale_bar,

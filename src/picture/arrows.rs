@@ -47,10 +47,15 @@ pub(super) fn size(element: f64, unit: f64) -> f64 {
 
 /// An arrow from one pixel to another, with its tip exactly at the second one.
 pub(super) fn arrow(ends: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> Item {
+    Item::part("arrow", with_halo(ends, size, colour, halo))
+}
+
+/// The halo and the shape of an arrow.
+pub(super) fn with_halo(ends: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> [Item; 2] {
     let (corners, part) = outline(ends, HEAD * size);
     let path = Path::polygon(&corners.map(point));
     let pen = Pen::solid(narrow(2.0 * HALO * HEAD * size * part.max(0.5)));
-    Item::part("arrow", [Item::stroke(path.clone(), pen, (halo, HALO_ALPHA)), Item::fill(path, colour)])
+    [Item::stroke(path.clone(), pen, (halo, HALO_ALPHA)), Item::fill(path, colour)]
 }
 
 /// An arrow without a halo, which would cover what lies beside it.

@@ -45,6 +45,8 @@ impl SeenMoment<'_> {
 /// origin, or from the centre of mass for a camera that follows it (m).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
+    /// Whether the camera follows the centre of mass.
+    follows: bool,
     /// The camera's axes: to the right, up and towards it.
     axes: [DVec3; 3],
     bodies: [DVec3; 2],
@@ -58,6 +60,8 @@ pub(super) struct Seen {
 /// The view that all panels of a picture have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shot {
+    /// Whether the camera follows the centre of mass.
+    pub(super) follows: bool,
     /// The target, from the centre of mass if that is followed, or else from the origin (m).
     pub(super) offset: DVec3,
     /// Pixels per metre at the target.
@@ -84,7 +88,7 @@ impl Seen {
         let farthest = sound().map(SeenMoment::spread).reduce(f64::max).unwrap_or(f64::INFINITY);
         let axes = axes(view.camera.azimuth, view.camera.elevation);
         let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let mut all = Self { axes, bodies: none, all: none, apart: none, widest: 0.2 * largest(&usual) };
+        let mut all = Self { follows, axes, bodies: none, all: none, apart: none, widest: 0.2 * largest(&usual) };
         for (at, moment) in moments.iter().enumerate() {
             let run = &scene.runs[moment.run];
             let CameraBoxes { centre: of_all, bodies } = &*moment.seen;
@@ -112,6 +116,11 @@ impl Seen {
         }
         all.all = union(all.all, all.bodies);
         (!moments.is_empty()).then_some(all)
+    }
+
+    /// The larger of the width and the height that bodies need (m).
+    pub(super) fn size(&self) -> f64 {
+        (self.bodies[1] - self.bodies[0]).truncate().max_element()
     }
 
     /// Gives each the heights and depths of all, so that one ground is at one height.
@@ -189,7 +198,7 @@ pub(super) fn shots(all: &[Seen], lens: &Lens, room: [f64; 4], filled: f64) -> V
     let least = |scale: &dyn Fn(&Seen) -> f64| all.iter().map(scale).fold(f64::INFINITY, f64::min);
     let most = least(&|seen| fit(seen, seen.bodies).min(filled * room[2] / seen.widest));
     let pixels = least(&|seen| fit(seen, seen.all)).clamp(SMALLER * most, most);
-    all.iter().map(|seen| Shot { offset: seen.target(lens, room, pixels), pixels }).collect()
+    all.iter().map(|seen| Shot { follows: seen.follows, offset: seen.target(lens, room, pixels), pixels }).collect()
 }
 
 /// The greatest side of each body of a scene at rest and at the start (m); `None` without a place of one of them.

@@ -2,7 +2,7 @@
 //! is needed.
 
 use super::compose;
-use super::listed::{Composer, Listed, corners, parts};
+use super::listed::{Composer, Listed, corners, heights, parts};
 use localshape::picture::Item;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
@@ -49,7 +49,9 @@ fn outline(picture: &Listed, index: usize) -> Option<[f32; 4]> {
     };
     if panel.sight.flat {
         let is_body = |item: &&Item| match item {
-            Item::Clip { items, .. } => parts(items, "obstacle").is_empty(),
+            Item::Clip { items, .. } => {
+                ["obstacle", "ground", "floor"].iter().all(|name| parts(items, name).is_empty())
+            }
             _ => false,
         };
         let bodies: Vec<_> = picture.under.iter().filter(is_body).collect();
@@ -199,5 +201,62 @@ fn bodies_leave_room_to_obstacles_near_them() {
         for at in corners.map(|corner| panel.sight.clip * glam::Vec3::from(corner.position).extend(1.0)) {
             assert!(at.x.abs() <= at.w && at.y.abs() <= at.w, "{ball}: {at}");
         }
+    }
+}
+
+/// Where all runs hold nodes to their end, held nodes have one place in all panels and frames.
+#[test]
+fn held_bodies_are_seen_by_one_camera() {
+    let pins = |hold: &str| {
+        let scene = parse(&format!(
+            "gravity = [0, -9.8, 0]
+            time = {{ duration = 0.5, frames_per_second = 20 }}
+            body.lattice = {{ cells = [4, 1, 1], side = 0.1 }}
+            hold = [{{ nodes = 'left'{hold} }}]
+            run = [
+                {{ name = 'stiff', model = {{ kind = 'shape-based', stiffness = 1e4 }} }},
+                {{ name = 'soft', model = {{ kind = 'shape-based', stiffness = 1e3 }} }},
+            ]"
+        ));
+        let of_panel = |picture: &Listed, at: usize| {
+            let [left, top, width, height] = picture.panels[at].viewport.map(|length| length as f32);
+            let is_inside = |[x, y]: [f32; 2]| x >= left && x < left + width && y >= top && y < top + height;
+            let pins = picture.marks.iter().filter(|mark| mark.shape == "pin").map(|mark| mark.rectangle);
+            let pins = pins.filter(|&[x, y, ..]| is_inside([x, y]));
+            pins.map(|[x, y, ..]| [(x - left).round() as i32, (y - top).round() as i32]).collect::<Vec<_>>()
+        };
+        let (_, film) = film(&scene, 5);
+        film.iter().flat_map(|(_, picture)| [0, 1].map(|at| of_panel(picture, at))).collect::<Vec<_>>()
+    };
+    let held = pins("");
+    assert!(held[0].len() == 4 && held.iter().all(|pins| *pins == held[0]), "{held:?}");
+    let released = pins(", until = 0.3");
+    assert!(released[0].len() == 4 && released[2] != released[3], "cameras follow: {released:?}");
+}
+
+/// A body that flies high before a camera that follows it has its height beside it.
+#[test]
+fn heights_are_told_where_the_camera_hides_them() {
+    let words = |body: &str, more: &str| {
+        let scene = parse(&format!(
+            "time = {{ duration = 0.1, frames_per_second = 10 }}
+            body = {{ lattice = {{ cells = [1, 1, 1], side = 0.2 }}, {body} }}
+            obstacle = [{{ kind = 'floor' }}]
+            run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
+            {more}"
+        ));
+        let picture = film(&scene, 1).1.swap_remove(0).1;
+        let said: Vec<_> = heights(&picture).into_iter().map(|run| run.text.clone()).collect();
+        assert!(said.len() < 2, "{said:?}");
+        said.concat()
+    };
+    assert_eq!(words("lowest = 1.25", ""), "1.25 m");
+    for (body, more) in [
+        ("lowest = 0.05", ""),
+        ("lowest = 1.25", "view.camera = { target = [0, 1, 0], distance = 5 }"),
+        ("lowest = 1.25", "hold = [{ nodes = 'top' }]"),
+        ("lowest = 1.25", "view.labels = ['name']"),
+    ] {
+        assert_eq!(words(body, more), "", "{body} {more}");
     }
 }

@@ -58,7 +58,14 @@ pub(super) struct Curve {
 impl From<Picture> for Listed {
     fn from(picture: Picture) -> Self {
         let ([mut floors, mut marks], mut curves) = ([Vec::new(), Vec::new()], Vec::new());
-        picture.under.iter().for_each(|item| read(item, &mut floors, &mut curves));
+        for item in &picture.under {
+            match item {
+                Item::Clip { items, .. } if !parts(items, "floor").is_empty() => {
+                    items.iter().for_each(|item| read(item, &mut floors, &mut curves));
+                }
+                item => read(item, &mut floors, &mut curves),
+            }
+        }
         for item in &picture.above {
             let (items, room) = match item {
                 Item::Clip { path, items } => (&items[..], Some(bounds(path))),
@@ -193,6 +200,16 @@ pub(super) fn parts<'i>(items: &'i [Item], wanted: &str) -> Vec<&'i [Item]> {
         _ => Vec::new(),
     };
     items.iter().flat_map(of_item).collect()
+}
+
+/// The numbers at the lines from bodies down to the ground.
+pub(super) fn heights(picture: &Picture) -> Vec<&TextRun> {
+    let two = picture.above.windows(2);
+    two.filter_map(|two| match two {
+        [Item::Part { name: "height", .. }, Item::Text(run)] => Some(run),
+        _ => None,
+    })
+    .collect()
 }
 
 /// Removes all parts with a name.

@@ -15,6 +15,8 @@ use std::borrow::Cow;
 /// fewer columns than possible.
 const MOST_COLUMNS: usize = 64;
 const LARGER: f64 = 1.02;
+/// A camera that could follow stands still if bodies need at most this many times the space.
+const MOST_SPACE: f64 = 2.0;
 /// The share of the width of the room for bodies that the widest one takes, so that floors and shadows are seen.
 const FILLED: f64 = 0.7;
 
@@ -63,16 +65,20 @@ impl Composer<'_> {
         let (view, body) = (&self.scene.view, self.scene.runs[run.run].body());
         let Some(shot) = shot else { return Framing::still(&view.camera) };
         let position = &run.shown().position;
-        let centre = (position.len() == body.len()).then(|| Traced::Centre.of(body, position));
-        let centre = centre.filter(|centre| centre.is_finite()).unwrap_or(view.camera.target);
         // Panels may differ by a pixel in width, but have one scale.
         let distance = framing::from_a_metre(self.scene, viewport, scale).focal / shot.pixels;
+        if !shot.follows {
+            return Framing { target: shot.offset, distance, moves: false };
+        }
+        let centre = (position.len() == body.len()).then(|| Traced::Centre.of(body, position));
+        let centre = centre.filter(|centre| centre.is_finite()).unwrap_or(view.camera.target);
         Framing { target: centre + shot.offset, distance, moves: true }
     }
 }
 
-/// The view of a camera that follows, over the whole course of a scene; `None` if the camera is fixed, or without a place of
-/// bodies.
+/// The view of a camera that chooses its own place, over the whole course of a scene; `None` if the scene places it, or without a place of
+/// bodies. It follows the centre of mass. Where all runs hold nodes it stands still, so that their panels can be compared, unless that makes
+/// bodies much smaller.
 pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
     if !scene.view.camera.follow {
         return None;
@@ -88,6 +94,19 @@ pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
         let boxes = course.times.iter().zip(&course.boxes);
         boxes.map(move |(&time, seen)| SeenMoment { time, run, seen: Cow::Borrowed(seen), is_sound })
     });
-    let moments: Vec<_> = distinct.into_iter().filter_map(start).chain(courses).collect();
-    Seen::new(scene, &moments, true)
+    let mut moments: Vec<_> = distinct.into_iter().filter_map(start).chain(courses).collect();
+    let following = Seen::new(scene, &moments, true)?;
+    if !holds_nodes(scene) {
+        return Some(following);
+    }
+    // Where a run that diverges goes is of no interest.
+    moments.retain(|moment| moment.is_sound);
+    let still = Seen::new(scene, &moments, false);
+    still.filter(|still| still.size() <= MOST_SPACE * following.size()).or(Some(following))
+}
+
+/// Whether all runs hold or grab nodes from their start to their end.
+fn holds_nodes(scene: &Scene) -> bool {
+    let holds = |run: &Run| run.grips.iter().any(|grip| grip.from <= 0.0 && grip.until >= scene.duration);
+    !scene.runs.is_empty() && scene.runs.iter().all(holds)
 }

@@ -174,14 +174,20 @@ impl<'a> Draft<'a> {
 
     /// The positions of the nodes that belong to more than broken elements (m).
     pub(super) fn whole(&self) -> Cow<'_, [DVec3]> {
-        let broken = &self.run.snapshot.broken;
-        if !broken.contains(&true) || self.position.is_empty() {
-            return Cow::Borrowed(&self.position[..]);
-        }
-        let mut whole = vec![false; self.body.len()];
-        let elements = self.body.elements().iter().zip(broken).filter(|(_, broken)| !*broken);
-        elements.flat_map(|(nodes, _)| nodes).for_each(|&node| whole[node as usize] = true);
+        let whole = self.whole_nodes().filter(|_| !self.position.is_empty());
+        let Some(whole) = whole else { return Cow::Borrowed(&self.position[..]) };
         self.position.iter().zip(whole).filter(|(_, whole)| *whole).map(|(&at, _)| at).collect()
+    }
+
+    /// Whether each node belongs to more than broken elements; `None` if no element is broken.
+    pub(super) fn whole_nodes(&self) -> Option<Vec<bool>> {
+        let broken = &self.run.snapshot.broken;
+        broken.contains(&true).then(|| {
+            let mut whole = vec![false; self.body.len()];
+            let elements = self.body.elements().iter().zip(broken).filter(|(_, broken)| !*broken);
+            elements.flat_map(|(nodes, _)| nodes).for_each(|&node| whole[node as usize] = true);
+            whole
+        })
     }
 
     /// The boxes around carried surfaces.

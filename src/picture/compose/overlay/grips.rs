@@ -30,9 +30,16 @@ impl Overlay for Grips {
         if draft.diverged || held.is_empty() || draft.position.is_empty() {
             return;
         }
+        // Nodes that no element is left of hold nothing.
+        let whole = draft.whole_nodes();
+        let is_whole = |node: usize| whole.as_ref().is_none_or(|whole| whole[node]);
         let visible = draft.bodies.cage().visible(&draft.position, &draft.lens);
         for grip in held {
-            let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|&node| node < draft.position.len());
+            let nodes = grip
+                .nodes
+                .iter()
+                .map(|&node| node as usize)
+                .filter(|&node| node < draft.position.len() && is_whole(node));
             let nodes: Vec<_> = nodes.collect();
             for &node in &nodes {
                 draft.mark(draft.position[node], HIDDEN + (1.0 - HIDDEN) * visible[node], marks);

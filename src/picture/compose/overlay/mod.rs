@@ -5,6 +5,7 @@ mod contacts;
 mod displacements;
 mod ghost;
 mod grips;
+mod height;
 mod loads;
 mod paths;
 
@@ -20,8 +21,8 @@ use crate::picture::{Framing, Item, arrows};
 use glam::DVec3;
 
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
-pub(super) const MARKS: [&dyn Overlay; 4] =
-    [&grips::Grips, &displacements::Displacements, &loads::Loads, &contacts::Contacts];
+pub(super) const MARKS: [&dyn Overlay; 5] =
+    [&height::Height, &grips::Grips, &displacements::Displacements, &loads::Loads, &contacts::Contacts];
 /// The overlays above them.
 pub(super) const CURVES: [&dyn Overlay; 2] = [&ghost::GhostOutline, &paths::Paths];
 
