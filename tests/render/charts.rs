@@ -309,7 +309,7 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let start = of_calm[0].points[0][0];
     let expected = start + (now[0] - start) * (divergence.time / frame.time) as f32;
     assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
-    assert!(picture.words.iter().any(|word| word.text.starts_with("diverged at ")), "a flag says it");
+    assert!(picture.words.iter().any(|word| word.text.starts_with("diverges at ")), "a flag says it");
     // The other run's curve is not compressed, and only that run has a value now.
     assert_eq!(circles(&picture).len(), 1);
     let height = moments(&picture)[0].points[1][1] - of_calm[0].points[0][1];

@@ -204,7 +204,7 @@ fn what_finds_no_room_is_known() {
     // Narrow panels have no scale bar.
     let text = include_str!("../../scenes/fig4b.toml");
     let mut narrow = Scene::parse(text, "fig4b.toml", &Limits::default()).expect("the shipped scene is sound");
-    narrow.view.size = [480, 800];
+    (narrow.view.size, narrow.view.columns) = ([300, 800], Some(2));
     let told = localshape::picture::left_out(&narrow);
     assert!(told.iter().any(|text| text == "the scale bar is left out"), "{told:?}");
     let title =

@@ -511,6 +511,54 @@ fn what_fades_lets_the_ground_through() {
     assert!(between.iter().all(|&off| off > 5), "{between:?}");
 }
 
+/// A solid obstacle in front of a body lies over it as half of its colour, and hides the ground behind it whole.
+#[test]
+fn bodies_are_seen_through_what_stands_before_them() {
+    let Some(gpu) = gpu("bodies_are_seen_through_what_stands_before_them") else { return };
+    let view = "[view]\nsize = [320, 240]\nlabels = []\n\
+                camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0, elevation = 0.1 }\n";
+    let solids =
+        ["'box'\ncentre = [0, 0.2, 0.4]\nsize = [0.4, 0.4, 0.1]\n", "'sphere'\ncentre = [0, 0.2, 0.5]\nradius = 0.2\n"];
+    for solid in solids {
+        let both = picture(&scene(&[WORLD, CUBE, FLOOR, "[[obstacle]]\nkind = ", solid, view]), 0);
+        let [mut body, mut obstacle] = [both.clone(), both.clone()];
+        body.panels[0].obstacles.solids.clear();
+        obstacle.panels[0].sound = Mesh::default();
+        for picture in [&mut body, &mut obstacle] {
+            picture.panels[0].lines.clear();
+            picture.panels[0].borders.clear();
+        }
+        let mut both = both.clone();
+        both.panels[0].lines.clear();
+        both.panels[0].borders.clear();
+        let draw = |picture: &Listed| {
+            Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("drawn")
+        };
+        let [both, body, obstacle] = [&both, &body, &obstacle].map(draw);
+        let light = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
+        let [one, other, mixed] = [&body, &obstacle, &both].map(|image| image.get_pixel(160, 115).0.map(light));
+        for at in 0..3 {
+            let half = 0.5 * (one[at] + other[at]);
+            assert!((mixed[at] - half).abs() < 0.02, "{solid}: {mixed:?}, half of {one:?} and {other:?}");
+        }
+        // Beside the body, but before the floor.
+        let beside = (70..160).filter(|&x| body.get_pixel(x, 115) != obstacle.get_pixel(x, 115));
+        let whole = beside.filter(|&x| both.get_pixel(x, 115) == obstacle.get_pixel(x, 115)).count();
+        assert!(whole > 5, "{solid}: {whole}");
+    }
+}
+
+/// Grips do not mark nodes whose elements are all broken.
+#[test]
+fn nodes_without_elements_have_no_marks() {
+    let scene = scene(&[WORLD, CUBE, FLOOR, "[[hold]]\nnodes = [0, 7]\n"]);
+    let mut frame = frame(&scene, 0);
+    let count = |frame: &_| compose(&scene, frame).marks.iter().filter(|mark| mark.shape == "pin").count();
+    assert_eq!(count(&frame), 2);
+    frame.runs[0].snapshot.broken = vec![true];
+    assert_eq!(count(&frame), 0);
+}
+
 /// In the plane obstacles have smooth rims of their own.
 #[test]
 fn rims_fade_with_their_obstacles() {

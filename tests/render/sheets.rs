@@ -273,7 +273,7 @@ fn what_blew_up_is_said_and_has_no_count() {
     let picture = compose_figure(&figure, &moments).expect("room");
     let last = picture.panels.last().expect("a tile");
     let said: Vec<_> = within(&picture, last).map(|word| word.text.as_str()).collect();
-    assert!(said.len() == 1 && said[0].starts_with("diverged at "), "{said:?}");
+    assert!(said.len() == 1 && said[0].starts_with("diverges at "), "{said:?}");
 }
 
 #[test]

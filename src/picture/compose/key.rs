@@ -38,7 +38,7 @@ impl Composer<'_> {
         let definition = match of_springs.iter().flatten().count() {
             0 => field.definition(),
             count if count == all => "change of length over length at rest",
-            _ => "of springs: change of length over length at rest",
+            _ => "springs: change of length over length; others: RMS distance over size",
         };
         let name = match colour.to {
             Some(to) => format!("{} to {}", field.name(), self.scene.runs[to].name),

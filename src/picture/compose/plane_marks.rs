@@ -7,7 +7,7 @@ use crate::picture::Item;
 use crate::picture::chart::spread;
 use crate::picture::compose::obstacle::{HalfSpace, half_space};
 use crate::picture::flat::soft;
-use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, MARGIN, RING, SHORT, STRONG, THIN, TICK};
+use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, MARGIN, RING, SHORT, STRONG, THIN};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{Path, Step, direction, point, winding};
 use crate::picture::plane::{WHOLE, clipped, from_side, is_inside, sides};
@@ -35,8 +35,6 @@ const FADING_SIGN: f64 = 0.2;
 const FADING_LEADER: [f64; 2] = [0.04, 0.12];
 /// Bodies of more elements have no signs, which would hide the elements.
 const MOST_SIGNS: usize = 16;
-/// Floors whose normal rises or falls less than this are walls.
-const STEEP: f64 = 0.5;
 
 /// The centre and radius of a circle inside a polygon (px).
 type Circle = (DVec2, f64);
@@ -68,23 +66,18 @@ impl Draft<'_> {
             // Only below a body: below the captions it would look like an underline.
             clear[3] = (clear[3] + RING * unit).min(top + height);
         }
-        if normal.y.abs() < STEEP {
-            // Walls may stand beside the text.
-            (clear[0], clear[2]) = (left + TICK * unit, left + width - TICK * unit);
+        if normal.y.abs() < LEVEL {
+            // Slopes and walls reach the sides of the panel, where they are cut.
+            (clear[0], clear[2]) = (left - MARGIN * unit, left + width + MARGIN * unit);
         }
         let Some([from, to]) = clipped(start, along, clear, WHOLE) else { return };
-        // The floor does not extend into the neighbouring panel.
-        let inward = along.perp();
-        let reaches = [from, to].map(|at| start + at * along).into_iter().flat_map(|end| {
-            [(end.x - left, inward.x, width), (end.y - top, inward.y, height)]
-                .map(|(at, step, length)| if step < 0.0 { at / -step } else { (length - at) / step.max(1e-9) })
-        });
-        let depth = reaches.fold(MARGIN * unit, f64::min).max(0.0);
+        let (inward, depth) = (along.perp(), MARGIN * unit);
+        let mut drawn = Vec::new();
         let sides = |[from, to]: [f64; 2], depth: f64| [start + from * along, (to - from) * along, depth * inward];
         let view = &self.scene.view;
         let [has_floor, has_shadow] = [view.floor != FloorStyle::None, view.shadow];
         if has_floor {
-            marks.push(fading(sides([from, to], depth), self.palette.hairline));
+            drawn.push(fading(sides([from, to], depth), self.palette.hairline));
         }
         // The shadow of the part of the body near the floor.
         let room = MARGIN * unit;
@@ -93,12 +86,14 @@ impl Draft<'_> {
         let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
         let (low, high) = ((low - room).max(from), (high + room).min(to));
         if high > low && has_shadow {
-            marks.push(shadow(sides([low, high], (GAP * unit).min(depth)), self.palette.shadow));
+            drawn.push(shadow(sides([low, high], GAP * unit), self.palette.shadow));
         }
         if has_floor {
             let thickness = (STRONG * unit).round().max(1.0);
-            marks.push(line(sides([from, to], thickness), self.palette.axis));
+            drawn.push(line(sides([from, to], thickness), self.palette.axis));
         }
+        // The floor does not extend into the neighbouring panel.
+        marks.extend((!drawn.is_empty()).then(|| Item::inside(self.viewport, drawn)));
     }
 
     /// Ring arrows for the orientation of elements, above the body.

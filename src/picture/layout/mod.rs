@@ -314,7 +314,10 @@ fn unit(view: &View) -> f64 {
     let [width, height] = view.size.map(|length| f64::from(length.max(1)));
     // Panels that arrange themselves stand side by side in a wide picture.
     let columns = view.columns.unwrap_or(if width < height { 1 } else { 2 }).clamp(1, 2) as u32;
-    print::unit(view.size, [(width / f64::from(columns)) as u32, u32::MAX])
+    let usual = print::unit(view.size, [(width / f64::from(columns)) as u32, u32::MAX]);
+    // In a tall picture type follows the area: the rows of a column as wide would have few words.
+    const TALL: f64 = 1.14e-3;
+    usual.min(TALL * (width * height).sqrt())
 }
 
 /// The text in a panel.
@@ -605,6 +608,8 @@ mod tests {
         assert_eq!(unit([1920, 1080], 2, 2), 1.5);
         assert!(unit([1280, 720], 6, 3) < 0.8);
         assert!(unit([64, 64], 2, 2) < 0.1);
+        let tall = Layout::around(&View { size: [900, 1600], ..View::default() }).unit;
+        assert!((tall - 1.368).abs() < 1e-9, "{tall}");
     }
 
     #[test]
