@@ -2,7 +2,7 @@
 
 use super::console;
 use super::drawing::{Device, Drawing};
-use super::failure::{Failure, Status};
+use super::failure::{Failure, Status, note};
 use super::film::replaceable;
 use super::frames::{Instants, Shard};
 use super::interrupt;
@@ -16,7 +16,7 @@ use crate::animation::Format;
 use crate::gpu::adapter_name;
 use crate::output::shell;
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of};
-use crate::picture::Composer;
+use crate::picture::{Composer, left_out};
 use crate::reading::beside::similar;
 use crate::reading::words::short;
 use crate::runner::Stored;
@@ -104,6 +104,7 @@ impl Render {
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
+        scenes.iter().filter(|_| !self.options.printing.quiet).for_each(tell_left_out);
         if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, StillFormat::of(out)?))) {
             return self.still(path, format, &scenes);
         }
@@ -242,6 +243,14 @@ impl Render {
             bail!("--animate is given {name} twice; expected different files");
         }
         Ok(films)
+    }
+}
+
+/// Tells what has no room in the pictures of a scene.
+fn tell_left_out(scene: &Scene) {
+    let (left_out, [width, height]) = (left_out(scene), scene.view.size);
+    if !left_out.is_empty() {
+        note(&format!("{}: not everything has room in {width}×{height}: {}", source_of(scene), left_out.join("; ")));
     }
 }
 

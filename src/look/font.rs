@@ -129,21 +129,27 @@ fn letters(_: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// The first character of a text that neither a scene's fonts nor the built-in ones have; `None` if all are drawn.
+/// The characters of a text that neither a scene's fonts nor the built-in ones have, each once.
 #[cfg(feature = "render")]
-pub(crate) fn missing(files: &FontFiles, text: &str) -> Option<char> {
+pub(crate) fn missing(files: &FontFiles, text: &str) -> Vec<char> {
     let own = [&files.regular, &files.semi_bold].into_iter().flatten().map(|file| &**file);
     let fonts = own.chain([REGULAR, SEMI_BOLD]).filter_map(|bytes| ttf_parser::Face::parse(bytes, 0).ok());
     let fonts: Vec<_> = fonts.collect();
     let is_drawn = |&c: &char| !c.is_whitespace() && !c.is_control() && !is_invisible(c);
     let is_missing = |c: &char| fonts.iter().all(|font| font.glyph_index(*c).is_none_or(|glyph| glyph.0 == 0));
-    text.chars().filter(is_drawn).find(is_missing)
+    let mut missing = Vec::new();
+    for character in text.chars().filter(is_drawn).filter(is_missing) {
+        if !missing.contains(&character) {
+            missing.push(character);
+        }
+    }
+    missing
 }
 
 /// Builds that cannot draw have no fonts.
 #[cfg(not(feature = "render"))]
-pub(crate) fn missing(_: &FontFiles, _: &str) -> Option<char> {
-    None
+pub(crate) fn missing(_: &FontFiles, _: &str) -> Vec<char> {
+    Vec::new()
 }
 
 /// The digest of a file, which replaces its name in the digest of a scene.

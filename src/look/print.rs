@@ -1,6 +1,5 @@
 //! Pictures for print: sizes in millimetres and type in points.
 
-use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, PathPart};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -117,7 +116,8 @@ impl TextScaleFile {
         let usual = print.points(TYPE * unit);
         let (times, [least, most]) = (pt / usual, SCALES);
         if !(least..=most).contains(&times) {
-            let [low, high] = SCALES.map(|scale| rounded(scale * usual, 1));
+            // Limits that are told are within the true ones.
+            let [low, high] = [(10.0 * least * usual).ceil() / 10.0, (10.0 * most * usual).floor() / 10.0];
             let message = format!("type of {pt} pt does not fit a picture of this size; expected {low} to {high} pt");
             report.at(path, message, "change `pt` or `size`".to_owned());
             return None;

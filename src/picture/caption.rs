@@ -77,10 +77,10 @@ impl<'a> Writer<'a> {
         Self { palette, fonts, scale, marks, curves, words }
     }
 
-    /// Gives a halo to words over bodies.
+    /// Gives a halo to words over bodies and plates.
     pub(super) fn over_bodies(&mut self, panels: &[Panel]) {
         for word in &mut self.words {
-            word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
+            word.has_halo = panels.iter().any(|panel| word.touches(panel.region) || panel.has_pane_at(word.bounds()));
         }
     }
 

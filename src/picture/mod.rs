@@ -50,7 +50,8 @@ pub(crate) use plane::{clipped, sides};
 pub(crate) use shadow::{CELLS, Shade};
 pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec2, Vec3};
+use narrow::narrow;
 
 /// A whole frame, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,6 +157,25 @@ pub(crate) struct Solid {
     pub mesh: Mesh,
     /// Its colour, before lighting.
     pub colour: Colour,
+}
+
+impl Panel {
+    /// Whether the box around a pane may lie over a part of the picture: left, top, right and bottom (px).
+    pub(crate) fn has_pane_at(&self, [left, top, right, bottom]: [f32; 4]) -> bool {
+        let [x, y, width, height] = self.viewport.map(|length| narrow(length.into()));
+        let is_at = |pane: &Pane| {
+            let corners = pane.corners.iter().map(|corner| self.sight.clip * Vec3::from(corner.position).extend(1.0));
+            let corners: Vec<_> = corners.collect();
+            // A corner behind the viewer may be anywhere.
+            let is_ahead = corners.iter().all(|at| at.w > self.sight.near);
+            let places = corners.iter().map(|at| Vec2::new(at.x, -at.y) / at.w);
+            let places = places.map(|at| Vec2::new(x, y) + Vec2::new(width, height) * (0.5 + 0.5 * at));
+            let [low, high] =
+                places.fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+            !is_ahead || low.x < right && high.x > left && low.y < bottom && high.y > top
+        };
+        self.obstacles.panes.iter().any(is_at)
+    }
 }
 
 /// A transparent convex polygon.

@@ -164,8 +164,7 @@ impl Fonts {
         own.into_iter().chain([built_in])
     }
 
-    /// The font and the glyph of a character. The first glyph of the built-in font, a box, represents all characters
-    /// that no font has.
+    /// The font and the glyph of a character; the first glyph of a font for characters that no font has.
     fn glyph(&self, weight: Weight, character: char) -> (u8, u16) {
         let character = if character.is_whitespace() { ' ' } else { character };
         let mut last = (0, 0);
@@ -201,9 +200,17 @@ impl Fonts {
         Letter { face, glyph, own: own((face, glyph)), advance }
     }
 
+    /// A character, or its code if no font has it: `[5F62]`.
+    fn drawn(&self, weight: Weight, character: char) -> impl Iterator<Item = char> {
+        let code = (self.letter(weight, character).glyph == 0).then(|| format!("[{:04X}]", u32::from(character)));
+        let own = code.is_none().then_some(character);
+        let code = code.filter(|_| !is_invisible(character));
+        own.into_iter().chain(code.into_iter().flat_map(|code| code.into_bytes()).map(char::from))
+    }
+
     /// The distance by which a character moves the pen, in sizes of type.
     fn advance(&self, weight: Weight, character: char) -> f64 {
-        self.letter(weight, character).advance
+        self.drawn(weight, character).map(|drawn| self.letter(weight, drawn).advance).sum()
     }
 
     /// The width of a text set at a size (px).
@@ -259,7 +266,7 @@ impl Fonts {
         }
     }
 
-    /// Lays out one line that begins at `left` (px).
+    /// Lays out one line that begins at `left` (px). Characters that no font has become their codes.
     pub(crate) fn lay_out(
         &self,
         text: &str,
@@ -269,6 +276,7 @@ impl Fonts {
         left: f64,
         baseline: f64,
     ) -> TextRun {
+        let text: String = text.chars().flat_map(|character| self.drawn(weight, character)).collect();
         let mut pen = left;
         let mut glyphs = Vec::with_capacity(text.len());
         for character in text.chars() {
@@ -279,7 +287,7 @@ impl Fonts {
             pen += moved;
         }
         TextRun {
-            text: text.to_owned(),
+            text,
             weight,
             size: narrow(size),
             baseline: narrow(baseline),
@@ -323,12 +331,12 @@ mod tests {
     }
 
     #[test]
-    fn unknown_characters_get_a_visible_box() {
+    fn unknown_characters_become_their_codes() {
         let fonts = Fonts::default();
-        let run = fonts.lay_out("龍", Weight::Regular, 16.0, [0; 3], 0.0, 0.0);
-        let face = fonts.face(run.glyphs[0].face).parsed();
-        assert!(face.glyph_bounding_box(GlyphId(run.glyphs[0].id)).is_some());
-        assert!(run.span[1] > 4.0);
+        let run = fonts.lay_out("a龍b", Weight::Regular, 16.0, [0; 3], 0.0, 0.0);
+        assert_eq!((run.text.as_str(), run.glyphs.len()), ("a[9F8D]b", 8));
+        assert!(run.glyphs.iter().all(|glyph| glyph.id != 0));
+        assert!((f64::from(run.span[1]) - fonts.width("a龍b", Weight::Regular, 16.0)).abs() < 1e-5);
     }
 
     #[test]
@@ -371,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_come_from_the_scene_then_from_the_built_in_font_then_there_is_a_box() {
+    fn letters_come_from_the_scene_then_from_the_built_in_font_then_there_is_a_code() {
         // A font with an empty character map has no letters, like one of another script.
         let mut blank = REGULAR.to_vec();
         let tables = usize::from(u16::from_be_bytes([blank[4], blank[5]]));
@@ -388,9 +396,8 @@ mod tests {
         assert_eq!(face(&other, Weight::Regular, "A").face, 0);
         assert_eq!(face(&other, Weight::SemiBold, "A").face, 3);
         assert_eq!(face(&other, Weight::Regular, "A").id, face(&Fonts::default(), Weight::Regular, "A").id);
-        // The box of the built-in font.
-        let unknown = face(&own, Weight::SemiBold, "龍");
-        assert_eq!((unknown.face, unknown.id), (1, 0));
+        let code = own.lay_out("[9F8D]", Weight::SemiBold, 16.0, [0; 3], 0.0, 0.0);
+        assert_eq!(own.lay_out("龍", Weight::SemiBold, 16.0, [0; 3], 0.0, 0.0), code);
         assert_eq!(own.width("111", Weight::Regular, 26.0), own.width("888", Weight::Regular, 26.0));
         assert!(own == with(SEMI_BOLD, None) && own != other && own != Fonts::default());
     }

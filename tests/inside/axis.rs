@@ -5,15 +5,17 @@ use super::*;
 #[test]
 fn ticks_are_few_and_round() {
     type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
-    let expected: [Case; 22] = [
+    let expected: [Case; 24] = [
         (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
         (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
         (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),
         (Kind::Count, [0.0, 27.0], "", 4, &["0", "10", "20", "30"], ""),
         (Kind::Count, [0.0, 27.0], "", 2, &["0", "30"], ""),
         (Kind::Value, [0.0, 0.102], "m", 4, &["0", "50", "100"], "mm"),
-        (Kind::Value, [0.0, 3136.0], "J", 4, &["0", "1", "2", "3"], "kJ"),
-        (Kind::Value, [0.62, 1.08], "", 4, &["0.6", "0.8", "1.0"], ""),
+        (Kind::Value, [0.0, 3136.0], "J", 4, &["0", "2", "4"], "kJ"),
+        (Kind::Value, [0.0, 1.55], "", 3, &["0", "1", "2"], ""),
+        (Kind::Count, [0.0, 85.0], "", 3, &["0", "50", "100"], ""),
+        (Kind::Value, [0.62, 1.08], "", 4, &["0.6", "0.8", "1.0", "1.2"], ""),
         (Kind::Value, [-35.0, 120.0], "J", 4, &["−50", "0", "50", "100"], "J"),
         (Kind::Value, [0.0, 4e-7], "kg m/s", 4, &["0", "2×10⁻⁷", "4×10⁻⁷"], "kg m/s"),
         (Kind::Fixed, [0.0, 3.0], "s", 6, &["0", "1", "2", "3"], "s"),
@@ -48,8 +50,8 @@ fn whatever_the_range_it_is_inside_and_ticks_rise() {
                     assert!((2..=most).contains(&axis.ticks.len()), "{}", told());
                     assert!(axis.ticks.windows(2).all(|two| two[0] < two[1]), "{}", told());
                     assert!(axis.ticks.iter().all(|&tick| (-1e-6..=1.0 + 1e-6).contains(&axis.share(tick))));
-                    assert!((-1e-6..=0.2).contains(&axis.share(low)), "{}", told());
-                    assert!((0.8..=1.0 + 1e-6).contains(&axis.share(high)), "{}", told());
+                    assert!((-1e-6..=0.24).contains(&axis.share(low)), "{}", told());
+                    assert!((0.76..=1.0 + 1e-6).contains(&axis.share(high)), "{}", told());
                     let distinct: std::collections::BTreeSet<_> = axis.texts.iter().collect();
                     assert_eq!(distinct.len(), axis.texts.len(), "{}", told());
                 }

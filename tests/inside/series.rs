@@ -11,7 +11,19 @@ fn series(values: &[f64], diverged: bool) -> Series {
     let diverged = diverged.then_some(values.len() as f64);
     let (name, members) = Default::default();
     let times = Vec::new();
-    Series { run: 0, name, style, is_count: false, is_part: false, points, times, members, diverged, is_end: false }
+    Series {
+        run: 0,
+        name,
+        style,
+        is_count: false,
+        is_part: false,
+        divisor: 1.0,
+        points,
+        times,
+        members,
+        diverged,
+        is_end: false,
+    }
 }
 
 #[test]

@@ -511,7 +511,15 @@ fn a_chart_of_what_is_broken_says_what_breaks() {
     let same = brittle(alike(2, "light"));
     assert!(said(&same).contains(&"of 3 cubes".to_owned()), "{:?}", said(&same));
     let mixed = same.replacen("'shape-based'", "'mass-spring'", 1);
-    assert!(said(&mixed).contains(&"elements, springs".to_owned()), "{:?}", said(&mixed));
+    assert!(said(&mixed).contains(&"% of elements, springs".to_owned()), "{:?}", said(&mixed));
+    // The same share of 60 springs and of 3 cubes.
+    let scene = parse(&mixed);
+    let mut frame = Runner::new(&scene, &[0, 1]).frame(0);
+    for (run, broken) in frame.runs.iter_mut().zip([0.3, 0.015]) {
+        run.snapshot.diagnostics.broken = broken;
+    }
+    let heights: Vec<_> = circles(&compose(&scene, &frame)).iter().map(|circle| circle.points[0][1]).collect();
+    assert!(heights.len() == 2 && (heights[0] - heights[1]).abs() < 1e-3, "{heights:?}");
 }
 
 #[test]

@@ -102,7 +102,10 @@ fn scripts_that_need_shaping_are_warned_of() {
     let warnings = |name: &str| {
         let text = "time.duration = 1\nbody.lattice = { cells = [1, 1, 1], side = 0.1 }\n[[run]]\n\
                     model = { kind = 'shape-based', stiffness = 1e4 }\n";
-        good(&format!("{text}name = '{name}'")).warnings
+        let mut warnings = good(&format!("{text}name = '{name}'")).warnings;
+        // Letters that no font has are told apart.
+        warnings.retain(|told| !told.message.starts_with("no font has "));
+        warnings
     };
     for (name, wrong) in [("سرد", 'س'), ("שלום", 'ש'), ("नमस्ते", 'न'), ("e\u{301}", '\u{301}')]
     {

@@ -296,9 +296,14 @@ fn characters_that_no_font_has_are_told() {
         told.into_iter().map(|one| (one.place, one.message)).collect::<Vec<_>>()
     };
     assert_eq!(warnings("title = 'β = 1/3, ΔT² ≤ 4 – “a”\u{200b}'"), []);
-    let message = "no font has \"⅓\" (U+2153), so that a box is drawn in its place".to_owned();
+    let message = "no font has \"⅓\" (U+2153), so that its code is drawn in its place".to_owned();
     assert_eq!(warnings("title = 'β = ⅓'"), [("view.title".to_owned(), message.clone())]);
-    assert_eq!(warnings("caption = 'a ⅓ and 龍'"), [("view.caption".to_owned(), message.clone())]);
+    let message =
+        "no font has \"⅓\" (U+2153) and \"龍\" (U+9F8D), so that their codes are drawn in their place".to_owned();
+    assert_eq!(warnings("caption = 'a ⅓ and ⅓ 龍'"), [("view.caption".to_owned(), message.clone())]);
+    let named = good(&with("").replacen("name = '", "name = 'Пружины ", 1)).warnings;
+    let told = named.first().map(|one| (one.place.as_str(), one.message.starts_with("no font has \"П\" (U+041F), ")));
+    assert_eq!(told, Some(("run[0].name", true)), "{named:?}");
 }
 
 #[test]

@@ -35,9 +35,9 @@ pub(in crate::picture) struct Stretch {
     pub unit: String,
 }
 
-/// An axis extends to the next round number up to this part of its range away, otherwise by the second part, so that no
-/// curve runs along its border.
-const NEAR: f64 = 0.13;
+/// An axis extends to the next round number up to one of these parts of its range away, the first with few ticks, otherwise by the second
+/// part, so that no curve runs along its border.
+const NEAR: [f64; 3] = [0.3, 0.13, 0.0];
 const BEYOND: f64 = 0.05;
 
 impl Axis {
@@ -167,8 +167,8 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
     // Counts have no fractions.
     let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
     let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
-    // With or without an extension to the next round number.
-    let ways = steps.flat_map(|(digit, power)| [NEAR, 0.0].map(|near| (digit, power, near)));
+    // With or without an extension to a round number farther or nearer.
+    let ways = steps.flat_map(|(digit, power)| NEAR.map(|near| (digit, power, near)));
     let divisions = ways.map(|(digit, power, near)| {
         let step = times_ten(digit, power);
         let [from, to] = [low / step, high / step];

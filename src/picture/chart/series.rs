@@ -29,6 +29,8 @@ pub(in crate::picture) struct Series {
     pub is_part: bool,
     /// Times (s), or displacements (m), and finite values, those of counts as steps.
     pub points: Vec<[f64; 2]>,
+    /// The number by which its diagnostic is divided.
+    pub divisor: f64,
     /// When each of them was there (s); empty for diagnostics, which have the times as points.
     pub times: Vec<f64>,
     /// For a mean of several scenes or nodes, the time series between which they lie: a band shows their least and greatest values.
@@ -85,6 +87,15 @@ impl Series {
         Self { times, members, ..Self::plain(of_run.run, style, points) }
     }
 
+    /// Divides all values by a number; runs without parts stay as they are.
+    pub(super) fn divide_by(&mut self, whole: f64) {
+        if whole > 0.0 {
+            self.divisor *= whole;
+            let points = self.points.iter_mut().chain(self.members.iter_mut().flatten());
+            points.for_each(|point| point[1] /= whole);
+        }
+    }
+
     /// Points of a run.
     pub(super) fn plain(run: usize, style: LineStyle, points: Vec<[f64; 2]>) -> Self {
         let (name, times, members) = Default::default();
@@ -94,6 +105,7 @@ impl Series {
             style,
             is_count: false,
             is_part: false,
+            divisor: 1.0,
             points,
             times,
             members,

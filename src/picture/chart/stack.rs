@@ -83,7 +83,14 @@ impl Quantity {
             series.truncate(runs);
         }
         let counted = diagnostic.filter(|one| matches!(one, Diagnostic::TurnedOver | Diagnostic::Broken));
-        let is_count = counted.is_some();
+        let in_parts = counted.map(|counted| of_parts(counted, of_scenes));
+        // Springs and elements have no common scale but their shares.
+        let is_share = in_parts.as_deref() == Some(SHARES);
+        if is_share {
+            series.truncate(runs);
+            series.iter_mut().for_each(|one| one.divide_by(0.01 * whole(Diagnostic::Broken, &scene.runs[one.run])));
+        }
+        let is_count = counted.is_some() && !is_share;
         let of = plot.of();
         let mut one = Self {
             at,
@@ -92,14 +99,14 @@ impl Quantity {
             kind: if is_count { Kind::Count } else { Kind::Value },
             unit: of.map_or_else(|| diagnostic.map_or("", Diagnostic::unit), |of| of.plot.words()[1]),
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
-            range: series::range(&series, !is_count),
+            range: series::range(&series, counted.is_none()),
             against: (!plot.is_over_time()).then(|| series::ways(&series)),
             series,
             runs,
             extent: scene.extent(),
         };
-        let unit = match (counted, one.values(MOST_TICKS)) {
-            (Some(counted), _) => of_parts(counted, of_scenes),
+        let unit = match (in_parts, one.values(MOST_TICKS)) {
+            (Some(parts), _) => parts,
             (None, Some(values)) => values.unit,
             (None, None) => "none".to_owned(),
         };
@@ -167,21 +174,32 @@ impl Quantity {
     }
 }
 
+/// The unit of counts of unlike things.
+const SHARES: &str = "% of elements, springs";
+
+/// The kinds of parts of a run that a diagnostic counts, with their numbers: elements, or springs where these break.
+fn parts_of(diagnostic: Diagnostic, run: &Run) -> Vec<(usize, &'static str)> {
+    if diagnostic != Diagnostic::Broken {
+        return elements(run.body());
+    }
+    let breaking = run.models_and_bodies().filter(|(model, body)| model.properties(body).breakable.is_some());
+    let of_body = |(model, body): (&dyn ElasticModel, &Arc<Body>)| match model.springs().len() {
+        0 => elements(body),
+        springs => vec![(springs, "springs")],
+    };
+    breaking.flat_map(of_body).collect()
+}
+
+/// The number of all parts of a run that a diagnostic counts.
+fn whole(diagnostic: Diagnostic, run: &Run) -> f64 {
+    parts_of(diagnostic, run).iter().map(|(count, _)| count).sum::<usize>() as f64
+}
+
 /// The unit of a count of elements, or of springs where these break: how many there are, if all runs have equally many.
 fn of_parts(diagnostic: Diagnostic, of_scenes: &[(&Scene, &History)]) -> String {
-    let of_run = |run: &Run| -> Vec<(usize, &'static str)> {
-        if diagnostic != Diagnostic::Broken {
-            return elements(run.body());
-        }
-        let breaking = run.models_and_bodies().filter(|(model, body)| model.properties(body).breakable.is_some());
-        let of_body = |(model, body): (&dyn ElasticModel, &Arc<Body>)| match model.springs().len() {
-            0 => elements(body),
-            springs => vec![(springs, "springs")],
-        };
-        breaking.flat_map(of_body).collect()
-    };
     let of_scene = |(scene, history): &(&Scene, &History)| -> Vec<_> {
-        history.series.iter().map(|series| of_run(&scene.runs[series.run])).filter(|parts| !parts.is_empty()).collect()
+        let of_runs = history.series.iter().map(|series| parts_of(diagnostic, &scene.runs[series.run]));
+        of_runs.filter(|parts| !parts.is_empty()).collect()
     };
     let all: Vec<_> = of_scenes.iter().flat_map(of_scene).collect();
     let has_springs = |parts: &Vec<(usize, &str)>| parts.iter().any(|(_, name)| *name == "springs");
@@ -191,7 +209,7 @@ fn of_parts(diagnostic: Diagnostic, of_scenes: &[(&Scene, &History)]) -> String 
             _ => format!("of {} elements", number::count(first.iter().map(|(count, _)| count).sum())),
         },
         _ if all.iter().all(has_springs) => "springs".to_owned(),
-        _ if all.iter().any(has_springs) => "elements, springs".to_owned(),
+        _ if all.iter().any(has_springs) => SHARES.to_owned(),
         _ => "elements".to_owned(),
     }
 }

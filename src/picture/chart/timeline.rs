@@ -41,23 +41,23 @@ type Timed = (f64, [f64; 2]);
 struct Moving {
     diagnostic: Option<Diagnostic>,
     is_over_time: bool,
-    /// For each run shown its colour and, of what is measured of one thing, points.
-    runs: Vec<(usize, Colour, Vec<Timed>)>,
+    /// For each run shown its colour, the number by which its diagnostic is divided and, of what is measured of one thing, points.
+    runs: Vec<(usize, Colour, f64, Vec<Timed>)>,
 }
 
 impl Moving {
     fn new(plot: &Plot, series: &[Series]) -> Self {
         let points = |one: &Series| one.times.iter().copied().zip(one.points.iter().copied()).collect();
-        let runs = series.iter().map(|one| (one.run, one.style.colour, points(one))).collect();
+        let runs = series.iter().map(|one| (one.run, one.style.colour, one.divisor, points(one))).collect();
         Self { diagnostic: plot.diagnostic(), is_over_time: plot.is_over_time(), runs }
     }
 
     /// The present value of a run, and its colour.
     fn now(&self, run: &RunFrame) -> Option<([f64; 2], Colour)> {
-        let (_, colour, points) = self.runs.iter().find(|(of, ..)| *of == run.run)?;
+        let (_, colour, divisor, points) = self.runs.iter().find(|(of, ..)| *of == run.run)?;
         let time = run.snapshot.time;
         let at = match self.diagnostic {
-            Some(diagnostic) => [time, diagnostic.of(&run.snapshot.diagnostics)],
+            Some(diagnostic) => [time, diagnostic.of(&run.snapshot.diagnostics) / divisor],
             None => points[points.partition_point(|(there, _)| *there <= time).checked_sub(1)?].1,
         };
         Some((at, *colour))

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 /// Warns of all that is probably not meant.
 pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
-    warn_of_missing_letters(&scene.view, report);
+    warn_of_missing_letters(scene, report);
     warn_of_unused(scene, typed, report);
     warn_of_time(scene, report);
     warn_of_steps(scene, report);
@@ -36,15 +36,29 @@ fn warn_of_unused(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) 
     }
 }
 
-/// Warns of texts around panels with a character that no font has.
-fn warn_of_missing_letters(view: &View, report: &mut Collector<'_>) {
-    for (key, text) in [("title", &view.title), ("caption", &view.caption), ("clock", &view.clock)] {
-        if let Some(missing) = font::missing(&view.look.font, text) {
-            let (letter, number) = (quoted(&missing.to_string()), u32::from(missing));
-            let message = format!("no font has {letter} (U+{number:04X}), so that a box is drawn in its place");
-            let help = "write it in other letters, or give a `view.font` that has it";
-            report.warn(&key_path!["view", key], message, help);
-        }
+/// Warns of texts in pictures with characters that no font has.
+fn warn_of_missing_letters(scene: &Scene, report: &mut Collector<'_>) {
+    let View { title, caption, clock, look, .. } = &scene.view;
+    let around = [("title", title), ("caption", caption), ("clock", clock)];
+    let around = around.into_iter().map(|(key, text)| (key_path!["view", key].to_vec(), text));
+    let runs = scene.runs.iter().enumerate().map(|(at, run)| (key_path!["run", at, "name"].to_vec(), &run.name));
+    for (path, text) in around.chain(runs) {
+        let missing = font::missing(&look.font, text);
+        let letter = |&letter: &char| format!("{} (U+{:04X})", quoted(&letter.to_string()), u32::from(letter));
+        let (letters, what) = match &missing[..] {
+            [] => continue,
+            [one] => (letter(one), "its code is drawn in its place".to_owned()),
+            [all @ .., last] if all.len() < 5 => {
+                let all: Vec<_> = all.iter().map(letter).collect();
+                (format!("{} and {}", all.join(", "), letter(last)), "their codes are drawn in their place".to_owned())
+            }
+            [first, second, others @ ..] => (
+                format!("{}, {} and {} other characters", letter(first), letter(second), others.len()),
+                "their codes are drawn in their place".to_owned(),
+            ),
+        };
+        let help = "write it in other letters, or give a `view.font` that has them";
+        report.warn(&path, format!("no font has {letters}, so that {what}"), help);
     }
 }
 
