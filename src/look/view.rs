@@ -101,7 +101,7 @@ pub struct View {
     pub edges: EdgeStyle,
     /// The camera. It follows the centre of mass of each run's body. All panels and frames have one scale, at which the
     /// body takes about 60 % of its panel's width at its widest moment, or up to a fifth less to show obstacles near it.
-    /// Where all runs hold or grab nodes throughout, it stands still and sees all that bodies reach, if they need no more than twice the space.
+    /// Where all simulated runs hold or grab nodes throughout, it stands still and sees all that bodies reach, if they need no more than twice the space.
     /// The whole scene is simulated before the first frame is drawn. With a `target` or a `distance` the camera is fixed.
     #[serde(serialize_with = "open")]
     #[schemars(with = "CameraFile")]

@@ -89,7 +89,7 @@ fn frames_on_a_full_disk() {
     let place = Place::new();
     place.write("long.toml", &lasting("10"));
     let after = "ls -A out | grep -v localshape-checkpoint";
-    let Some(ran) = on_small_disk(&place, "300k", "render long.toml -o out --size 320x240", after) else {
+    let Some(ran) = on_small_disk(&place, "300k", "render long.toml -o out --size 320x240 --quiet", after) else {
         return;
     };
     if ran.status == Some(3) {

@@ -46,7 +46,7 @@ fn the_library_writes_the_same_files_as_the_program() {
     let Some(place) = place_to_draw() else { return };
     let text = include_str!("../../scenes/fig4b.toml").replace("duration = 3.0", "duration = 0.5");
     place.write("drop.toml", &text.replace("size = [1280, 840]", "size = [320, 210]"));
-    place.run("render drop.toml --frames 20").good();
+    place.run("render drop.toml --frames 20").warned("the charts are left out");
 
     let scene = Scene::load(&place.path("drop.toml"), &Limits::default()).expect("a scene");
     let frame = Runner::new(&scene, &[0, 1]).frame(20);
@@ -98,7 +98,7 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     let place = Place::new();
     let sized = |size: &str| SMALL.replace("size = [96, 64]", &format!("size = {size}"));
     place.write("print.toml", &sized("{ mm = [90, 60], dpi = 100 }\ntext_scale = { pt = 8 }"));
-    place.run("render print.toml --frames 0").good();
+    place.run("render print.toml --frames 0").warned("the descriptions of 2 runs are shortened");
     let file = std::io::BufReader::new(std::fs::File::open(place.path("output/print/frame_00000.png")).unwrap());
     let reader = png::Decoder::new(file).read_info().expect("a picture");
     let info = reader.info();
@@ -232,7 +232,7 @@ fn some_frames_of_one_run_in_another_size() {
 
 /// The small scene with a strip, which needs more height.
 fn with_strip(text: &str) -> String {
-    text.replace("size = [96, 64]", "size = [320, 180]\ncharts = [\"shape_error\"]")
+    text.replace("size = [96, 64]", "size = [640, 420]\ncharts = [\"shape_error\"]")
 }
 
 #[test]
@@ -243,7 +243,7 @@ fn strips_are_the_same_whichever_frames_are_drawn() {
     place.run("render strip.toml --frames 3 -o alone --threads 1").good();
     let bytes = |path: &str| std::fs::read(place.path(path)).unwrap();
     assert!(bytes("output/strip/frame_00003.png") == bytes("alone/frame_00003.png"));
-    place.run("render small.toml --frames 3 --size 320x180 -o without").good();
+    place.run("render small.toml --frames 3 --size 640x420 -o without").good();
     let [with, without] = ["alone", "without"].map(|folder| pixels(&place.path(folder).join("frame_00003.png")).1);
     assert!(with != without);
     // A strip does not change any number.

@@ -236,12 +236,18 @@ impl Ran {
         self
     }
 
-    /// Expects success, and on standard error only warnings of steps that are too large.
+    /// Expects success, and on standard error only warnings, of which one says something.
     #[track_caller]
-    pub(crate) fn too_large_steps(self) -> Self {
-        let is_told = self.err.starts_with("warning: ") && self.err.contains("of the largest that is stable at rest");
+    pub(crate) fn warned(self, of: &str) -> Self {
+        let is_told = self.err.starts_with("warning: ") && self.err.contains(of);
         assert!(self.status == Some(0) && is_told && !self.err.contains("error"), "{self:?}");
         self
+    }
+
+    /// Expects success, and warnings of steps that are too large.
+    #[track_caller]
+    pub(crate) fn too_large_steps(self) -> Self {
+        self.warned("of the largest that is stable at rest")
     }
 
     /// Expects an exit status and one error message that contains all of `words`.

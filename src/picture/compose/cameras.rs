@@ -77,7 +77,7 @@ impl Composer<'_> {
 }
 
 /// The view of a camera that chooses its own place, over the whole course of a scene; `None` if the scene places it, or without a place of
-/// bodies. It follows the centre of mass. Where all runs hold nodes it stands still, so that their panels can be compared, unless that makes
+/// bodies. It follows the centre of mass. Where all simulated runs hold nodes it stands still, so that their panels can be compared, unless that makes
 /// bodies much smaller.
 pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
     if !scene.view.camera.follow {
@@ -105,8 +105,9 @@ pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
     still.filter(|still| still.size() <= MOST_SPACE * following.size()).or(Some(following))
 }
 
-/// Whether all runs hold or grab nodes from their start to their end.
+/// Whether all runs that are simulated, and at least one, hold or grab nodes from their start to their end.
 fn holds_nodes(scene: &Scene) -> bool {
     let holds = |run: &Run| run.grips.iter().any(|grip| grip.from <= 0.0 && grip.until >= scene.duration);
-    !scene.runs.is_empty() && scene.runs.iter().all(holds)
+    let mut simulated = scene.runs.iter().filter(|run| run.recording.is_none()).peekable();
+    simulated.peek().is_some() && simulated.all(holds)
 }
