@@ -321,9 +321,6 @@ fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
     return vec4(over_behind(sound_edged(colour, corner), corner), 1.0);
 }
 
-// The opacity of an obstacle, by which the processor recognises it. The difference to opaque is invisible.
-const OBSTACLE = 254.0 / 255.0;
-
 // The same light on another material, nothing below the floor, fading at the sides of its room, and less where bodies lie behind it.
 @fragment
 fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
@@ -341,5 +338,5 @@ fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
     }
     let behind = textureLoad(body_depth, vec2<i32>(corner.place.xy), 0);
     let over = select(1.0, SOLID_OVER_BODIES, behind > 0.0);
-    return vec4(corner.own * light.diffuse + light.gloss, OBSTACLE * opacity * over);
+    return vec4(corner.own * light.diffuse + light.gloss, opacity * over);
 }

@@ -172,7 +172,7 @@ impl<'a> Depths<'a> {
         if self.depth(at) <= bodies {
             return 0.0;
         }
-        let whole = if bodies > 0.0 { 254.0 * SOLID_OVER_BODIES } else { 254.0 };
+        let whole = if bodies > 0.0 { 255.0 * SOLID_OVER_BODIES } else { 255.0 };
         (f32::from(self.marks[self.pixel(at)][3]) / whole).min(1.0)
     }
 

@@ -3,7 +3,7 @@
 use crate::gpu::Gpu;
 use crate::picture::measures;
 
-/// The format of the picture, written as linear light. Its opacity tells bodies (1) from obstacles (less) and the ground (0).
+/// The format of the picture, written as linear light. Its opacity is that of obstacles where one is nearest, and else 1 on bodies and 0 on the ground.
 pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Depth is the near distance over the distance: 1 nearest, 0 infinitely far.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
