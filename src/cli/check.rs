@@ -1,7 +1,7 @@
 //! `check`: what scenes and meshes contain, or every mistake in them.
 
 use super::console::{print, print_json};
-use super::failure::{Failure, Status, complain, note, warn, with_causes};
+use super::failure::{Failure, Status, complain, note_no_room, warn, with_causes};
 #[cfg(feature = "render")]
 use super::options::size;
 use super::options::{PrintOptions, SceneOptions};
@@ -68,10 +68,7 @@ impl Check {
                     }
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
                     warn(path, &scene);
-                    if !no_room.is_empty() {
-                        let [width, height] = scene.view.size;
-                        note(&format!("{file}: not everything has room in {width}×{height}: {}", no_room.join("; ")));
-                    }
+                    note_no_room(&file, scene.view.size, &no_room);
                 }
                 Err(error) => {
                     failed = Some(worse(failed, status_of(&error)));

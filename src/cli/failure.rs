@@ -119,6 +119,13 @@ pub(super) fn note(message: &str) {
     let _ = writeln!(io::stderr(), "warning: {message}");
 }
 
+/// Warns of what has no room in pictures of a file with a width and height (px).
+pub(super) fn note_no_room(file: &str, [width, height]: [u32; 2], left_out: &[String]) {
+    if !left_out.is_empty() {
+        note(&format!("{file}: not everything has room in {width}×{height}: {}", left_out.join("; ")));
+    }
+}
+
 /// Prints an error on standard error. If that fails there is nowhere to report it.
 pub(super) fn complain(message: &str) {
     let _ = writeln!(io::stderr(), "error: {message}");

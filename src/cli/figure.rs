@@ -1,7 +1,7 @@
 //! `figure`: the paper's figures, and figures of the user.
 
 use super::console;
-use super::failure::{Failure, Status, note, warn};
+use super::failure::{Failure, Status, note_no_room, warn};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
@@ -173,9 +173,8 @@ impl FigureCommand {
         let [width, height] = figure.size;
         let (picture, left_out) = compose_figure(figure, &moments)
             .map_err(|error| Failure::usage(format!("{}: at {width}×{height} {error}", figure.name)))?;
-        if !self.printing.quiet && !left_out.is_empty() {
-            let left_out = left_out.join("; ");
-            note(&format!("{}: not everything has room in {width}×{height}: {left_out}", figure.name));
+        if !self.printing.quiet {
+            note_no_room(&figure.name, figure.size, &left_out);
         }
         let gpu = gpu.filter(|_| figure.is_lit());
         let tags = Tags::of_figure(figure, &moments, &adapter_name(gpu)).texts();

@@ -2,7 +2,7 @@
 
 use super::console;
 use super::drawing::{Device, Drawing};
-use super::failure::{Failure, Status, note};
+use super::failure::{Failure, Status, note_no_room};
 use super::film::replaceable;
 use super::frames::{Instants, Shard};
 use super::interrupt;
@@ -104,7 +104,9 @@ impl Render {
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
-        scenes.iter().filter(|_| !self.options.printing.quiet).for_each(tell_left_out);
+        for scene in scenes.iter().filter(|_| !self.options.printing.quiet) {
+            note_no_room(&source_of(scene), scene.view.size, &left_out(scene));
+        }
         if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, StillFormat::of(out)?))) {
             return self.still(path, format, &scenes);
         }
@@ -243,14 +245,6 @@ impl Render {
             bail!("--animate is given {name} twice; expected different files");
         }
         Ok(films)
-    }
-}
-
-/// Tells what has no room in the pictures of a scene.
-fn tell_left_out(scene: &Scene) {
-    let (left_out, [width, height]) = (left_out(scene), scene.view.size);
-    if !left_out.is_empty() {
-        note(&format!("{}: not everything has room in {width}×{height}: {}", source_of(scene), left_out.join("; ")));
     }
 }
 

@@ -3,7 +3,9 @@
 use super::listed::{Composer, Listed, Mark, compose_figure, parts, remove};
 use super::{compose, fig4b, frame, gpu, parse, renderer, unknown};
 use glam::{DVec3, Vec3};
-use localshape::picture::{Item, LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Pane, Panel, Vertex, winding};
+use localshape::picture::{
+    Item, LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Pane, PaneCorner, Panel, Vertex, winding,
+};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
@@ -546,6 +548,31 @@ fn bodies_are_seen_through_what_stands_before_them() {
         let whole = beside.filter(|&x| both.get_pixel(x, 115) == obstacle.get_pixel(x, 115)).count();
         assert!(whole > 5, "{solid}: {whole}");
     }
+}
+
+/// Words over plates have a ground of their own.
+#[test]
+fn words_know_the_plates_behind_them() {
+    let corners = [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]];
+    let corners = corners.map(|position| PaneCorner { position, ..PaneCorner::default() }).to_vec();
+    let mut panel = Panel { viewport: [100, 0, 200, 100], ..Panel::default() };
+    panel.sight.near = 0.1;
+    panel.obstacles.panes = vec![Pane { corners, ..Pane::default() }];
+    // In the middle of the lower half: from 150 to 250 px across, from 50 to 75 px down.
+    for (bounds, is_over) in [
+        ([160.0, 60.0, 170.0, 70.0], true),
+        ([110.0, 60.0, 151.0, 70.0], true),
+        ([110.0, 60.0, 149.0, 70.0], false),
+        ([160.0, 30.0, 170.0, 49.0], false),
+        ([160.0, 76.0, 170.0, 90.0], false),
+    ] {
+        assert_eq!(panel.has_pane_at(bounds), is_over, "{bounds:?}");
+    }
+    // A corner behind the viewer may be anywhere.
+    panel.sight.near = 2.0;
+    assert!(panel.has_pane_at([0.0, 0.0, 1.0, 1.0]));
+    panel.obstacles.panes.clear();
+    assert!(!panel.has_pane_at([0.0, 0.0, 1.0, 1.0]));
 }
 
 /// Grips do not mark nodes whose elements are all broken.

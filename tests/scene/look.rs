@@ -242,6 +242,22 @@ fn mistakes_of_maps_and_factors() {
     view("shadow = 'no'", "20:10 `view.shadow` is the string \"no\"; expected true or false");
 }
 
+/// The limits of type that are told can be typed.
+#[test]
+fn limits_of_type_that_are_told_are_allowed() {
+    for size in [[40, 20], [85, 60], [89, 62], [180, 101]] {
+        let with_type = |pt: &str| with(&format!("size = {{ mm = {size:?} }}\ntext_scale = {{ pt = {pt} }}"));
+        let message = bad(&with_type("72")).mistakes()[0].message.clone();
+        let told = message.split_once("expected ").and_then(|(_, limits)| limits.strip_suffix(" pt"));
+        let (_, most) = told.and_then(|limits| limits.split_once(" to ")).expect("limits");
+        // No picture has type below 5 pt.
+        match most.parse::<f64>().expect("a number") >= 5.0 {
+            true => assert!(good(&with_type(most)).view.look.text_scale > 2.9, "{message}"),
+            false => assert!(size == [40, 20], "{message}"),
+        }
+    }
+}
+
 /// A folder with a scene that names fonts, and files beside it.
 struct Place(tempfile::TempDir);
 
