@@ -23,7 +23,7 @@ mod view;
 
 pub use crate::colour::Colour;
 pub use camera::Camera;
-pub(crate) use camera_box::CameraBoxes;
+pub(crate) use camera_box::{CameraBox, CameraBoxes};
 pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
 pub use font::FontFiles;

@@ -224,6 +224,8 @@ pub(crate) struct Sight {
     pub element: f32,
     /// Width of the body's contours, from 0 to 1: below 1 if the body is small.
     pub contour_share: f32,
+    /// The strength of folds inside the turned-over set, from 0 to 1: below 1 if elements are small, 0 if they are many.
+    pub folds: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
     pub middle: [f32; 2],
     /// Unit of soft distances in light and of steps in depth: a side, or more for bodies of many small elements.

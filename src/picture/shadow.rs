@@ -5,7 +5,6 @@
 //! edges between triangles that turn towards the light and others. Each edge begins or ends a layer, row by row, and a
 //! cell with at least one layer is in the shadow. The file is long because of its tests.
 
-use super::camera::Lens;
 use super::narrow::narrow;
 use crate::sim::geometry;
 use glam::{DVec2, DVec3};
@@ -79,11 +78,11 @@ impl Plane {
     }
 }
 
-/// Unit vector towards the key light, which turns with the camera.
-pub(super) fn key_light(lens: &Lens) -> DVec3 {
-    let towards_viewer = lens.right.cross(DVec3::Y);
+/// Unit vector towards the key light, which turns with the camera, whose axis to the right is a unit vector.
+pub(super) fn key_light(right: DVec3) -> DVec3 {
+    let towards_viewer = right.cross(DVec3::Y);
     let (left, towards) = libm::sincos(KEY_AZIMUTH);
-    let level = towards * towards_viewer - left * lens.right;
+    let level = towards * towards_viewer - left * right;
     let slope = libm::tan(KEY_ELEVATION);
     (level + slope * DVec3::Y).normalize()
 }

@@ -25,8 +25,6 @@ const STEP_ALPHA: f32 = 0.85;
 const FOLD_ALPHA: f32 = 0.80;
 /// Opacities of edges of turned-over elements: visible, behind other elements, and behind turned-over ones.
 const ALARM_ALPHAS: [f32; 3] = [ALARM_EDGE_ALPHA, 0.62, 0.15];
-/// Folds inside the turned-over set of elements smaller than this (px) are fainter.
-const SMALL_FOLDED: f32 = 8.0;
 /// Width (px in the reference picture) and opacity of the edges of plates.
 const PLATE_EDGE: f32 = 1.35;
 const PLATE_EDGE_ALPHA: f32 = 0.86;
@@ -278,8 +276,10 @@ impl<'a> Depths<'a> {
                     let sides = [across, -across].map(|way| self.depth_alone(at.middle + tap + way));
                     [if sides[0].min(sides[1]) <= 0.0 { 1.0 } else { 0.0 }]
                 });
-                let smallness = (self.panel.sight.element / SMALL_FOLDED).min(1.0).powi(2);
-                [step, outline, hidden * (smallness + ends * (1.0 - smallness))]
+                let folds = self.panel.sight.folds;
+                let strength = folds + ends * (1.0 - folds);
+                // Of many elements the outline alone is drawn.
+                [if folds > 0.0 { step } else { step * ends }, outline, hidden * strength]
             }
         };
         let is_of_obstacle = matches!(line.kind, LineKind::ObstacleEdge | LineKind::ObstacleContour);
@@ -320,11 +320,11 @@ impl<'a> Depths<'a> {
             let path = segment.part(run, looks.len());
             match stroke.second {
                 Second::Casing(casing) => {
-                    add(&path, stroke.width, casing, alpha, items);
+                    add(&path, stroke.width, casing, in_bytes(alpha, casing), items);
                     let sides = (CASING * stroke.width).max(LEAST_CASING);
-                    add(&path, stroke.width - 2.0 * sides, colour, alpha, items);
+                    add(&path, stroke.width - 2.0 * sides, colour, in_bytes(alpha, colour), items);
                 }
-                _ => add(&path, stroke.width, colour, alpha, items),
+                _ => add(&path, stroke.width, colour, in_bytes(alpha, colour), items),
             }
         }
     }
@@ -351,11 +351,14 @@ impl<'a> Depths<'a> {
     }
 }
 
+/// The opacity in bytes of a colour that has an opacity in linear light, in which dark lines cover less, and light ones more.
+fn in_bytes(alpha: f32, colour: Colour) -> f32 {
+    let (dark, light) = (1.0 - (1.0 - alpha).powf(IN_BYTES), alpha.powf(IN_BYTES));
+    dark + smooth(colour[1].into(), MEDIUM[0], MEDIUM[1]) * (light - dark)
+}
+
 /// Adds a line to items: to the last one, if it looks alike.
 fn add(path: &Path, width: f32, colour: Colour, alpha: f32, items: &mut Vec<Item>) {
-    // Opacities are meant for linear light, in which dark lines cover less, and light ones more.
-    let (dark, light) = (1.0 - (1.0 - alpha).powf(IN_BYTES), alpha.powf(IN_BYTES));
-    let alpha = dark + smooth(colour[1].into(), MEDIUM[0], MEDIUM[1]) * (light - dark);
     let (pen, paint) = (Pen { round: false, ..Pen::solid(width) }, Paint { colour, alpha });
     match items.last_mut() {
         Some(Item::Stroke { path: last, pen: other, paint: same }) if *other == pen && *same == paint => {
@@ -377,6 +380,7 @@ enum Style {
     AlarmStep,
     AlarmFold,
     Step,
+    FineStep,
     ObstacleStep,
     Outline,
     ObstacleOutline,
@@ -384,7 +388,7 @@ enum Style {
 
 impl Style {
     /// All, in the order of drawing.
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::Hidden,
         Self::HiddenBar,
         Self::Edge,
@@ -394,6 +398,7 @@ impl Style {
         Self::AlarmStep,
         Self::AlarmFold,
         Self::Step,
+        Self::FineStep,
         Self::ObstacleStep,
         Self::Outline,
         Self::ObstacleOutline,
@@ -406,7 +411,8 @@ impl Style {
             LineKind::Bar => [Self::HiddenBar, Self::Bar, Self::Bar],
             LineKind::ObstacleEdge => [Self::ObstacleEdge; 3],
             LineKind::AlarmEdge => [Self::AlarmEdge; 3],
-            LineKind::Contour | LineKind::FineContour => [Self::Step, Self::Outline, Self::Outline],
+            LineKind::Contour => [Self::Step, Self::Outline, Self::Outline],
+            LineKind::FineContour => [Self::FineStep, Self::Outline, Self::Outline],
             LineKind::AlarmContour => [Self::AlarmStep, Self::Outline, Self::AlarmFold],
             LineKind::ObstacleContour => [Self::ObstacleStep, Self::ObstacleOutline, Self::ObstacleOutline],
         }
@@ -427,7 +433,7 @@ impl Style {
             Self::AlarmEdge => (ALARM_EDGE_WIDTH * own, alarm_line, strength),
             Self::AlarmStep => (STEP_WIDTH * own, alarm_line, STEP_ALPHA),
             Self::AlarmFold => (FOLD_WIDTH * own, alarm_line, FOLD_ALPHA),
-            Self::Step => (STEP_WIDTH * own, edge, STEP_ALPHA),
+            Self::Step | Self::FineStep => (STEP_WIDTH * own, edge, STEP_ALPHA),
             Self::ObstacleStep => (STEP_WIDTH * scale, edge, STEP_ALPHA),
             Self::Outline => (OUTLINE_WIDTH * own, outline, outline_alpha),
             Self::ObstacleOutline => (OUTLINE_WIDTH * scale, outline, outline_alpha),
@@ -462,17 +468,29 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
                     continue;
                 }
                 for (run, level) in runs(&levels).into_iter().filter(|&(_, level)| level > 0) {
-                    let (path, part) = (&mut paths[style as usize][level - 1].0, segment.part(run, levels.len()).0);
-                    let continues = is_fine(&chain[0]) && are_joined(path, &part);
-                    path.extend(&part[usize::from(continues)..]);
+                    let part = segment.part(run, levels.len()).0;
+                    // At the end of a fold the edges of triangles turn back beside each other. Their opacities would add up to a knot, so
+                    // each level is drawn with all that are stronger.
+                    let least = if matches!(style, Style::FineStep) { 1 } else { level };
+                    for level in least..=level {
+                        let path = &mut paths[style as usize][level - 1].0;
+                        let continues = is_fine(&chain[0]) && are_joined(path, &part);
+                        path.extend(&part[usize::from(continues)..]);
+                    }
                 }
             }
         }
     }
     for (style, paths) in Style::ALL.into_iter().zip(paths) {
         let (width, colour, alpha) = style.pen(panel, &palette);
+        let of_level = |level: usize| in_bytes(alpha * level as f32 / LEVELS as f32, colour);
         for (level, path) in (1..).zip(paths).filter(|(_, path)| !path.is_empty()) {
-            add(&path, width, colour, alpha * level as f32 / LEVELS as f32, &mut items);
+            // What the levels below do not cover yet.
+            let alpha = match style {
+                Style::FineStep => 1.0 - (1.0 - of_level(level)) / (1.0 - of_level(level - 1)),
+                _ => of_level(level),
+            };
+            add(&path, width, colour, alpha, &mut items);
         }
     }
     panel.strokes.iter().for_each(|stroke| depths.stroke(stroke, 1.0, false, &mut items));

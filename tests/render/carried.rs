@@ -4,7 +4,7 @@ use super::listed::Listed;
 use super::{draw, frame, gpu, parse, unknown};
 use glam::{DVec3, Vec3};
 use image::RgbImage;
-use localshape::picture::{LineKind, Panel};
+use localshape::picture::{LineKind, Mesh, Panel};
 use localshape::runner::Frame;
 use localshape::scene::Scene;
 use localshape::sim::{Assembly, Body, Carried, Weights};
@@ -200,6 +200,59 @@ fn turned_over_elements_are_seen_on_a_surface_and_in_it_and_others_when_asked() 
     let hatches = || panel.turned_over.vertices.iter().map(|vertex| vertex.hatch);
     assert!(hatches().fold(f32::MIN, f32::max) - hatches().fold(f32::MAX, f32::min) > 0.5);
     assert_eq!(without.panels[0].sound.triangles.len(), 3 * 9 * 2);
+}
+
+/// A square of two triangles whose corners lie in the middles of four cells of a layer.
+fn square(body: &Body) -> Carried {
+    let mut carried = Carried { rest: Vec::new(), triangles: vec![[0, 1, 3], [0, 3, 2]], weights: Weights::default() };
+    for nodes in body.elements().iter().take(4) {
+        carried.rest.push(nodes.iter().map(|&node| body.rest()[node as usize]).sum::<DVec3>() / 8.0);
+        carried.weights.push(nodes, &[0.125; 8]);
+    }
+    carried
+}
+
+/// The area of a mesh (squares of a side).
+fn area(mesh: &Mesh) -> f32 {
+    let corner = |at: u32| Vec3::from(mesh.vertices[at as usize].position);
+    let of = |[a, b, c]: [u32; 3]| 0.5 * (corner(b) - corner(a)).cross(corner(c) - corner(a)).length();
+    mesh.triangles.iter().map(|&triangle| of(triangle)).sum()
+}
+
+/// Triangles that cross the border of a turned-over cell are cut at it.
+#[test]
+fn the_border_of_turned_over_elements_is_where_they_end() {
+    let scene = carrying(&block(2, ""), square);
+    let mut turned: Frame = frame(&scene, 0);
+    // One cell has a quarter of the square, and three cells have three.
+    for cell in 0..3 {
+        turned.runs[0].snapshot.turned_over[cell] = true;
+        let panel = &unknown(&scene).compose(&turned).panels[0];
+        let [over, sound] = [&panel.turned_over, &panel.sound].map(area);
+        let expected = [0.25, 0.5, 0.75][cell];
+        assert!((over - expected).abs() < 1e-4 && (sound + over - 1.0).abs() < 1e-4, "{cell}: {over} {sound}");
+        // Its outline is half a side in each cell at the border, and one kind of line.
+        let border = panel.lines.iter().filter(|line| line.kind == LineKind::AlarmContour);
+        let length: f32 = border.map(|line| Vec3::from(line.from).distance(line.to.into())).sum();
+        assert!((length - 1.0).abs() < 1e-4, "{cell}: {length}");
+    }
+}
+
+/// In bodies of more than 200 elements the outline of what has turned over is drawn, and no edges of single elements through the body.
+#[test]
+fn many_turned_over_elements_have_one_outline() {
+    let alarm = |cells: u32| {
+        let scene = block(cells, "");
+        let mut turned: Frame = frame(&scene, 0);
+        turned.runs[0].snapshot.turned_over.iter_mut().step_by(3).for_each(|over| *over = true);
+        let picture = unknown(&scene).compose(&turned);
+        let edges = picture.panels[0].lines.iter().filter(|line| line.kind == LineKind::AlarmEdge);
+        let seen_through = edges.filter(|line| line.strength > 0.0).count();
+        (picture.panels[0].sight.folds, seen_through, count(&picture.panels[0], LineKind::AlarmContour))
+    };
+    let (few, many) = (alarm(5), alarm(6));
+    assert!(few.0 > 0.0 && few.1 > 0 && few.2 > 0, "{few:?}");
+    assert!(many.0 == 0.0 && many.1 == 0 && many.2 > 0, "{many:?}");
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! Pictures with their own fonts, colours and sizes.
 
-use super::listed::{Listed, remove};
-use super::{compose, fig4b, gpu, parse, renderer};
-use glam::DVec3;
+use super::listed::{Composer, Listed, remove};
+use super::{compose, fig4b, frame, gpu, parse, renderer};
 use image::RgbImage;
 use localshape::look::{EdgeStyle, FontFiles};
 use localshape::picture::Picture;
 use localshape::picture::{Line, LineKind, Obstacles, Weight};
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 
 const SIZE: [u32; 2] = [640, 360];
 
@@ -149,19 +149,32 @@ fn small_bodies_have_narrower_contours_and_large_ones_the_usual() {
 }
 
 #[test]
-fn the_floor_reaches_as_far_as_the_shadow_of_a_body_that_flies() {
-    let fade = |up: f64, aside: f64| {
-        let (scene, mut frame) = fig4b(0);
-        for run in &mut frame.runs {
-            run.snapshot.position.iter_mut().for_each(|at| *at += DVec3::new(aside, up, 0.0));
-        }
-        compose(&scene, &frame).panels[0].floor.clone().expect("a floor").fade
+fn the_floor_reaches_as_far_as_shadows_and_stays_as_it_is() {
+    let text = super::plain().replace("camera.distance = 2.65", "");
+    let scene = parse(&text);
+    assert!(scene.view.camera.follow);
+    let fade = |picture: &Listed| {
+        picture.panels.iter().map(|panel| panel.floor.as_ref().expect("a floor").fade).collect::<Vec<_>>()
     };
-    let usual = fade(0.0, 0.0);
-    assert_eq!(fade(0.0, -0.02), usual);
-    for farther in [fade(1.0, 0.0), fade(0.0, 0.6)] {
-        assert!(farther[0] > usual[0] + 1.0 && farther[1] > usual[1] + 1.0, "{farther:?} {usual:?}");
-    }
-    let all: Vec<_> = (0..400).map(|step| fade(0.01 * f64::from(step), 0.0)[0]).collect();
+    // Without a course the floor follows the shadow of the moment.
+    let moved = |up: f64| {
+        let mut frame = frame(&scene, 0);
+        for run in &mut frame.runs {
+            run.snapshot.position.iter_mut().for_each(|at| at.y += up);
+        }
+        fade(&compose(&scene, &frame))[0]
+    };
+    let [usual, up] = [0.0, 1.0].map(moved);
+    assert!(up[0] > usual[0] + 1.0 && up[1] > usual[1] + 1.0, "{up:?} {usual:?}");
+    let all: Vec<_> = (0..400).map(|step| moved(0.01 * f64::from(step))[0]).collect();
     assert!(all.windows(2).all(|two| (0.0..0.2).contains(&(two[1] - two[0]))), "{all:?}");
+    // The course of a scene, and a camera that stands still, have one floor.
+    let composer = Composer::new(&scene, &History::new(&scene, &[0, 1]));
+    let mut runner = Runner::new(&scene, &[0, 1]);
+    let fades: Vec<_> = [0, 20, 40, 60].map(|index| fade(&composer.compose(&runner.frame(index)))).concat();
+    assert!(fades[0][0] > usual[0] + 1.0 && fades.iter().all(|other| *other == fades[0]), "{fades:?}");
+    let (scene, mut frame) = fig4b(0);
+    let before = fade(&compose(&scene, &frame));
+    frame.runs[0].snapshot.position.iter_mut().for_each(|at| at.y += 2.0);
+    assert_eq!(fade(&compose(&scene, &frame)), before);
 }

@@ -509,7 +509,7 @@ fn what_fades_lets_the_ground_through() {
     let side = [3, 316].map(|x| [off(&bare, x, 0..240), off(&whole, x, 40..200)]);
     assert!(side.iter().all(|&[bare, whole]| bare <= 2 && whole > 30), "{side:?}");
     assert_eq!((off(&whole, 160, 0..240), off(&whole, 100, 0..200)), (0, 0));
-    let between = [off(&bare, 36, 0..240), off(&whole, 36, 0..240)];
+    let between = [off(&bare, 32, 0..240), off(&whole, 32, 0..240)];
     assert!(between.iter().all(|&off| off > 5), "{between:?}");
 }
 

@@ -17,6 +17,8 @@ use std::ops::Range;
 
 /// The period of the hatch in space (units of soft distances).
 const HATCH_PERIOD: f64 = 0.30;
+/// In bodies of more elements, edges of turned-over ones are not drawn.
+const MANY_TO_MARK: usize = 200;
 /// The largest radius of nodes in lengths of an element's edge.
 const CROWDED: f64 = 0.14;
 
@@ -95,6 +97,11 @@ impl Draft<'_> {
             }));
         }
         [sound, turned_over]
+    }
+
+    /// Whether only the outline of the turned-over set is drawn: the edges of many elements would be a scribble.
+    pub(super) fn marks_outline(&self) -> bool {
+        self.body.elements().len() > MANY_TO_MARK
     }
 
     /// Whether edges of sound elements are drawn in front of surfaces, and behind them.

@@ -6,6 +6,7 @@ use crate::carried::append_positions;
 use crate::look::BODIES;
 use crate::mesh::Sets;
 use crate::picture::chart::needed;
+use crate::picture::compose::rim::{Rim, Turned};
 use crate::picture::compose::surface::{Border, SurfaceLines, Surfaces, newell};
 use crate::picture::field::NOWHERE;
 use crate::picture::narrow::{narrow, narrow_count, narrow_point};
@@ -37,17 +38,19 @@ const NONE: u32 = u32::MAX;
 #[derive(Debug)]
 pub(super) struct Fine {
     pub(super) surface: Arc<Carried>,
-    body: usize,
+    pub(super) body: usize,
     /// The nodes, elements and faces of the body.
     nodes: Range<usize>,
     elements: Range<usize>,
     pub(super) faces: Range<usize>,
     /// The point of each corner. A point has a corner for each part of the surface around it between creases.
-    points: Vec<u32>,
+    pub(super) points: Vec<u32>,
     /// The corners of each triangle.
-    triangles: Vec<[u32; 3]>,
+    pub(super) triangles: Vec<[u32; 3]>,
     /// The element of the body that moves each triangle, or [`NONE`].
     movers: Vec<u32>,
+    /// The triangles in several elements, with that which moves each corner.
+    pub(super) crossing: Vec<(usize, [u32; 3])>,
     /// The entries of each corner, each three times a triangle plus the place of the corner in it.
     entries: Bins<u32>,
     /// The points at the ends of each edge, and the triangles beside it, or [`NONE`].
@@ -115,6 +118,7 @@ impl Fine {
             }
             corners.push(*part);
         }
+        let (movers, crossing) = movers(surface, &bodies.bodies()[body]);
         let entries = Bins::new(points.len(), corners.iter().copied().zip(0..));
         let beside: Vec<_> = all.iter().map(|edge| edge.triangles().map(|at| at.unwrap_or(NONE))).collect();
         Self {
@@ -125,7 +129,8 @@ impl Fine {
             faces: bodies.faces(body),
             points,
             triangles: corners.as_chunks().0.to_vec(),
-            movers: movers(surface, &bodies.bodies()[body]),
+            movers,
+            crossing,
             entries,
             edges: all.into_iter().map(|edge| edge.ends).collect(),
             is_closed: !beside.as_flattened().contains(&NONE),
@@ -145,7 +150,8 @@ impl Fine {
         let own = &mut elements[self.elements.clone()];
         let fill = bodies.bodies()[self.body].fill();
         own.iter_mut().enumerate().for_each(|(at, inside)| *inside = fill.is_none_or(|fill| fill[at] >= 1.0));
-        self.movers.iter().filter(|&&mover| mover != NONE).for_each(|&mover| own[mover as usize] = false);
+        let movers = self.movers.iter().chain(self.crossing.iter().flat_map(|(_, movers)| movers));
+        movers.filter(|&&mover| mover != NONE).for_each(|&mover| own[mover as usize] = false);
     }
 
     /// Its triangles with its points at places, and whether an eye sees their outsides.
@@ -230,8 +236,8 @@ fn elements_around(body: &Body) -> Bins<u32> {
 }
 
 /// The element of a body that moves each triangle of a surface: one with all nodes that its points follow or, where the surface
-/// passes from one element to another, that of a point.
-fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
+/// passes from one element to another, that of a point. Such triangles are listed with the elements of all three points.
+fn movers(surface: &Carried, body: &Body) -> (Vec<u32>, Vec<(usize, [u32; 3])>) {
     let around = elements_around(body);
     let nodes = |point: u32| surface.weights.of(point as usize).0;
     let mover = |points: &[u32]| {
@@ -240,8 +246,13 @@ fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
         let holds = |element: u32, node| body.elements()[element as usize].contains(node);
         around.find(|&element| points.iter().all(|&point| nodes(point).iter().all(|node| holds(element, node))))
     };
-    let of_triangle = |triangle: &[u32; 3]| mover(triangle).or_else(|| mover(&triangle[..1])).unwrap_or(NONE);
-    surface.triangles.par_iter().with_min_len(OF_THREAD).map(of_triangle).collect()
+    let of_triangle = |triangle: &[u32; 3]| match mover(triangle) {
+        Some(one) => [one; 3],
+        None => triangle.map(|point| mover(&[point]).unwrap_or(NONE)),
+    };
+    let all: Vec<_> = surface.triangles.par_iter().with_min_len(OF_THREAD).map(of_triangle).collect();
+    let crossing = all.iter().copied().enumerate().filter(|(_, [a, b, c])| a != b || b != c).collect();
+    (all.into_iter().map(|movers| movers[0]).collect(), crossing)
 }
 
 impl Surfaces<'_> {
@@ -277,21 +288,31 @@ impl Surfaces<'_> {
         let seen = faces.1;
         let is_whole = |at: usize| gone.get(at).is_none_or(|gone| !gone);
         let side = |at: usize| seen.get(at).filter(|_| is_whole(at));
-        let over = over.get(fine.elements.clone()).filter(|over| over.contains(&true));
-        let is_over: Vec<_> = over.map_or_else(Vec::new, |over| {
-            let is_over =
-                |(at, &mover): (usize, &u32)| is_whole(at) && over.get(mover as usize).is_some_and(|&over| over);
-            fine.movers.iter().enumerate().map(is_over).collect()
-        });
+        let over = over.get(fine.elements.clone()).filter(|over| over.contains(&true)).unwrap_or_default();
+        let turned =
+            |&mover: &u32| if over.get(mover as usize).is_some_and(|&over| over) { Turned::Yes } else { Turned::No };
+        let mut turned: Vec<_> = if over.is_empty() { Vec::new() } else { fine.movers.iter().map(turned).collect() };
+        let mut rim = Rim::default();
+        if !over.is_empty() {
+            rim = Rim::new(fine, &self.draft.bodies.assembly().bodies()[fine.body], over, &mut turned);
+            rim.add_corners(&mut sound.vertices, &mut sound.shades, base);
+        }
         // From outside nobody sees the inside of a closed surface of which no part has turned over or is gone.
-        let is_shut = fine.is_closed && is_over.is_empty() && gone.is_empty();
+        let is_shut = fine.is_closed && turned.is_empty() && gone.is_empty();
         let sides: &[bool] = if is_shut { &[true] } else { &[true, false] };
-        let is_sound = |at: usize| is_whole(at) && is_over.get(at).is_none_or(|over| !over);
+        let is_sound = |at: usize| is_whole(at) && turned.get(at).is_none_or(|&turned| turned == Turned::No);
+        let parts = |over: bool| rim.parts.iter().filter(move |part| part.2 == over && is_whole(part.0));
         for &side in sides {
             let shown = fine.triangles.iter().enumerate().filter(|&(at, _)| seen[at] == side && is_sound(at));
-            sound.triangles.extend(shown.map(|(_, triangle)| triangle.map(|corner| base as u32 + corner)));
+            let cut = parts(false).filter(|part| seen[part.0] == side).map(|part| part.1);
+            let corners = shown.map(|(_, triangle)| *triangle).chain(cut);
+            sound.triangles.extend(corners.map(|triangle| triangle.map(|corner| base as u32 + corner)));
         }
-        self.add_turned_over(fine, &is_over, sound, turned_over, base);
+        let is_over = |&(at, _): &(usize, &[u32; 3])| is_whole(at) && turned.get(at) == Some(&Turned::Yes);
+        if !turned.is_empty() {
+            let over = fine.triangles.iter().enumerate().filter(is_over).map(|(_, triangle)| *triangle);
+            self.add_turned_over(fine, over.chain(parts(true).map(|part| part.1)), &rim, sound, turned_over, base);
+        }
         let ends = |edge: usize| fine.edges[edge];
         let edges_where = |holds: &(dyn Fn([usize; 2]) -> bool + Sync)| -> Vec<_> {
             let holds = |beside: &[u32; 2]| holds(beside.map(|at| at as usize));
@@ -304,34 +325,52 @@ impl Surfaces<'_> {
             lines.borders.push(Border { line, edge: None });
         }
         let are_seen = |&edge: &usize| fine.beside[edge].iter().all(|&at| seen[at as usize]);
-        let creases = fine.creases.iter().map(|&edge| edge as usize).filter(are_seen).map(ends).collect();
+        let creases: Vec<_> = fine.creases.iter().map(|&edge| edge as usize).filter(are_seen).map(ends).collect();
+        let border = |ends| Border { line: self.line(ends, LineKind::Edge, 1.0), edge: None };
+        lines.borders.extend(self.long(&creases, points).into_iter().map(border));
+        if turned.is_empty() {
+            return;
+        }
         // The colours change where turned-over elements begin.
-        let rims = match is_over.is_empty() {
-            true => Vec::new(),
-            false => edges_where(&|[one, other]| is_over.get(one) != is_over.get(other)),
+        let state = |at: usize| turned.get(at).filter(|_| is_whole(at));
+        let differ = |beside: [usize; 2]| {
+            let states = beside.map(state);
+            states[0] != states[1] && !states.contains(&Some(&Turned::Partly))
         };
-        for pairs in [creases, rims] {
-            let border = |ends| Border { line: self.line(ends, LineKind::Edge, 1.0), edge: None };
-            lines.borders.extend(self.long(&pairs, points).into_iter().map(border));
+        let new = |at: u32| points.len() as u32 + at;
+        let cut = rim.lines.iter().filter(|(at, _)| is_whole(*at)).map(|(_, ends)| ends.map(new));
+        let rims: Vec<_> = edges_where(&differ).into_iter().chain(cut).collect();
+        let place = |corner: u32| points[fine.points[corner as usize] as usize];
+        let more = (0..rim.corners.len() as u32).map(|at| rim.place(at, place));
+        let points: Vec<_> = points.iter().copied().chain(more).collect();
+        for ends in self.long(&rims, &points) {
+            lines.borders.push(border(ends));
+            lines.drawn.push(self.line(ends, LineKind::AlarmContour, 1.0));
         }
     }
 
-    /// Adds the triangles of a carried surface that turned-over elements move. Its corners are in the mesh of sound elements,
-    /// from a place on.
-    fn add_turned_over(&self, fine: &Fine, is_over: &[bool], sound: &Mesh, turned_over: &mut Mesh, base: usize) {
-        if is_over.is_empty() {
-            return;
-        }
+    /// Adds triangles of a carried surface that turned-over elements move. Their corners are in the mesh of sound elements, from a place
+    /// on.
+    fn add_turned_over(
+        &self,
+        fine: &Fine,
+        triangles: impl Iterator<Item = [u32; 3]>,
+        rim: &Rim,
+        sound: &Mesh,
+        turned_over: &mut Mesh,
+        base: usize,
+    ) {
         let period = self.hatches[fine.body].period;
-        let mut places = vec![NONE; fine.points.len()];
-        let over = fine.triangles.iter().zip(is_over).filter(|(_, over)| **over).map(|(triangle, _)| triangle);
-        for triangle in over {
+        let mut places = vec![NONE; fine.points.len() + rim.corners.len()];
+        let rest = |corner: u32| fine.surface.rest[fine.points[corner as usize] as usize];
+        for triangle in triangles {
             let corner = |corner: u32| {
                 let place = &mut places[corner as usize];
                 if *place == NONE {
                     *place = turned_over.vertices.len() as u32;
                     let at = base + corner as usize;
-                    let rest = fine.surface.rest[fine.points[corner as usize] as usize];
+                    let new = corner.checked_sub(fine.points.len() as u32);
+                    let rest = new.map_or_else(|| rest(corner), |new| rim.place(new, rest));
                     let hatch = narrow(rest.dot(DVec3::ONE) / period);
                     turned_over.vertices.push(Vertex { hatch, ..sound.vertices[at] });
                     turned_over.shades.extend(sound.shades.get(at));

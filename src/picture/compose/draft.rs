@@ -121,7 +121,7 @@ impl<'a> Draft<'a> {
             room: between(viewport, clear),
             others: &[],
             scale,
-            key: key_light(&lens),
+            key: key_light(lens.right),
             origin: framing.target,
             side: view.side,
             skin: bodies.skin.points(&position),

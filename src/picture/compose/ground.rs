@@ -2,14 +2,16 @@
 
 use super::bodies::Bodies;
 use super::draft::Draft;
-use crate::look::FloorStyle;
+use crate::look::{CameraBox, CameraBoxes, FloorStyle, axes};
 use crate::picture::Floor;
 use crate::picture::compose::obstacle::Staged;
 use crate::picture::layout;
 use crate::picture::layout::steps::{MARGIN, NEAR};
 use crate::picture::narrow::{narrow, narrow_point};
-use crate::picture::shadow::{Casters, Plane, Shade};
+use crate::picture::shadow::{Casters, Plane, Shade, key_light};
 use crate::picture::shell::{boundaries, triangles};
+use crate::runner::history::History;
+use crate::scene::Scene;
 use crate::sim::geometry;
 use crate::sim::{Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
@@ -20,7 +22,7 @@ const FLOOR_FADE: [f64; 2] = [0.7, 2.0];
 /// third one; the second one smooths the start (sizes of the body).
 const STILL_NEAR: f64 = 0.5;
 const GENTLY: f64 = 0.3;
-const FARTHEST_SHADOW: f64 = 3.0;
+const FARTHEST_SHADOW: f64 = 2.0;
 /// Distance of the camera above which the floor is wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
 /// The most grid cells across a body, so that its lines are a side apart or more: for a lattice, whose cells the grid
@@ -30,6 +32,20 @@ const MOST_CELLS: [f64; 2] = [10.0, 5.0];
 const FLATTEST: f64 = 0.2;
 /// The darkness of the shadow of a body without surfaces, relative to one with surfaces.
 const SHEER: f64 = 0.38;
+
+/// The greatest distance (m) on the ground of the shadow of a body from the middle of all, in a course before a camera that follows them; `None`
+/// without a course.
+pub(super) fn shadow_way(scene: &Scene, history: &History) -> Option<f64> {
+    let key = key_light(axes(scene.view.camera.azimuth, scene.view.camera.elevation)[0]);
+    let way = |(&time, seen): (&f64, &CameraBoxes)| {
+        let (normal, height) = geometry::ground(&scene.obstacles, time)?;
+        let plane = Plane::new(normal, height - normal.dot(seen.centre));
+        let of_body = |body: &CameraBox| plane.shadow(body.centre - seen.centre, key).length();
+        seen.bodies.iter().map(of_body).reduce(f64::max)
+    };
+    let sound = history.series.iter().filter(|series| series.divergence.is_none());
+    sound.flat_map(|series| series.times.iter().zip(&series.boxes)).filter_map(way).reduce(f64::max)
+}
 
 impl Draft<'_> {
     /// The ground, if there is any.
@@ -64,18 +80,23 @@ impl Draft<'_> {
         })
     }
 
-    /// The extra width of the floor (sides), so that the shadow of a body that has moved away or flies high still falls
-    /// on it.
+    /// The extra width of the floor (sides), so that the shadow of a body that moves away or flies high still falls on it. It is the same in
+    /// all frames of a camera that stands still, and of one that follows a known course.
     fn farther(&self, plane: &Plane) -> f64 {
         if self.diverged || self.position.is_empty() {
             return 0.0;
         }
         let size = self.composer.extent / self.side;
-        let gone = self.bodies.nodes().map(|nodes| {
-            let middle = self.position[nodes.clone()].iter().sum::<DVec3>() / nodes.len() as f64;
-            plane.shadow((middle - self.origin) / self.side, self.key).length()
-        });
-        let gone = gone.fold(0.0, f64::max);
+        let now = || {
+            let middles = self.bodies.nodes().map(|nodes| self.centre(nodes));
+            let gone = middles.map(|middle| plane.shadow((middle - self.origin) / self.side, self.key).length());
+            gone.fold(0.0, f64::max)
+        };
+        let gone = match self.composer.shadow_way {
+            _ if !self.framing.moves => f64::INFINITY,
+            Some(way) => way / self.side,
+            None => now(),
+        };
         // A smooth start.
         let beyond = (gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size);
         beyond * beyond / (beyond + GENTLY * size)

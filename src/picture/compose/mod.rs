@@ -16,6 +16,7 @@ mod panel;
 mod plane_marks;
 mod pointer;
 mod region;
+mod rim;
 mod skin;
 mod surface;
 mod wire;
@@ -75,6 +76,8 @@ pub struct Composer<'a> {
     traced: Vec<TimeSeries>,
     /// The course that a camera sees, if it follows.
     seen: Option<Seen>,
+    /// The farthest shadow of a body ([`ground::shadow_way`]).
+    shadow_way: Option<f64>,
     /// The boxes of nodes near plates and walls, if the time series are known.
     reach: NearObstacles,
     /// The arrangement of the panels of the first frame, which all frames of the same runs have.
@@ -126,6 +129,7 @@ impl<'a> Composer<'a> {
             timeline: None,
             traced: if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() },
             seen: cameras::seen(scene, history),
+            shadow_way: ground::shadow_way(scene, history),
             reach,
             arranged: OnceLock::new(),
         };

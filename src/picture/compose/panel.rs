@@ -13,6 +13,8 @@ use std::ops::Range;
 
 /// Small bodies have narrower contours, down to this part of the width; otherwise they would be mostly outline.
 const LEAST_CONTOUR: f64 = 0.4;
+/// Folds inside the turned-over set of elements smaller than this (px) are fainter.
+const SMALL_FOLDED: f32 = 8.0;
 
 impl Draft<'_> {
     /// Draws the panel, with items below and above lit bodies.
@@ -74,6 +76,7 @@ impl Draft<'_> {
             soft: narrow(self.bodies.soft),
             element: narrow(self.element),
             contour_share: narrow(self.contour_share()),
+            folds: if self.marks_outline() { 0.0 } else { (narrow(self.element) / SMALL_FOLDED).min(1.0).powi(2) },
             middle: lens.project(self.centre(0..self.position.len())).map_or([0.0; 2], |(pixel, _)| pixel.map(narrow)),
         }
     }

@@ -219,8 +219,7 @@ impl Surfaces<'_> {
         } else {
             0
         });
-        // Edges of turned-over elements are always drawn.
-        let is_edged = self.is_fine() && (self.draft.edges()[0] || kinds.edge != LineKind::Edge);
+        let is_edged = self.is_fine() && self.edges(kinds)[0];
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
         let mut last = Vec::new();
         let is_inside_out = kinds.edge != LineKind::Edge;
@@ -258,11 +257,7 @@ impl Surfaces<'_> {
         let (start, end) = (self.at(a), self.at(b));
         let faces_away = |side: &FaceSide| borders.of(side).iter().all(|&seen| seen < 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && sides.iter().all(faces_away);
-        // Edges of turned-over elements are always drawn.
-        let [in_front, behind] = match kinds.edge {
-            LineKind::Edge => self.draft.edges(),
-            _ => [true; 2],
-        };
+        let [in_front, behind] = self.edges(kinds);
         // Smaller ones would be invisible.
         let is_large = self.draft.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
         if is_large && !self.is_fine() && if is_hidden { behind } else { in_front } {
@@ -280,6 +275,17 @@ impl Surfaces<'_> {
             && (borders.are_bent(sides) || self.draft.shades.as_ref().is_some_and(Shades::jump))
         {
             lines.borders.push(Border { line: self.line([start, end], kinds.edge, 1.0), edge: Some([a, b]) });
+        }
+    }
+
+    /// Whether edges in front of the body, and behind it, are drawn: those of few turned-over elements always. Of many only the outline
+    /// is seen through the body.
+    fn edges(&self, kinds: Lines) -> [bool; 2] {
+        let [in_front, behind] = self.draft.edges();
+        match kinds.edge {
+            LineKind::Edge => [in_front, behind],
+            _ if self.draft.marks_outline() => [in_front, false],
+            _ => [true; 2],
         }
     }
 
