@@ -190,8 +190,8 @@ impl Motion {
 
     /// The greatest distance (m) between two points of the path, at a distance from the pivot (m). A kinematic
     /// constraint may stretch a body by as much, and the speed of nodes after their release has no bound by the size of
-    /// the body at rest.
-    pub(crate) fn longest_way(&self, distance: f64) -> f64 {
+    /// the body at rest. Infinite for a path of the caller's own.
+    pub fn longest_way(&self, distance: f64) -> f64 {
         let way = |offset: Offset| offset.shift.length() + offset.rotation.length().min(PI) * distance;
         match self {
             Self::Still => 0.0,

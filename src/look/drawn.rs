@@ -2,7 +2,7 @@
 
 use super::palette::Palette;
 use super::print::Print;
-use super::run_lines::DASHES;
+use super::run_lines::{DASHES, LinePlace};
 use super::view::{ColourScale, EdgeStyle, Labels};
 use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Oklab, from_oklab, mixed, oklab, readable};
 use crate::reading::captions::rounded;
@@ -52,16 +52,15 @@ impl Palette {
         readable(colour, self.background, LEAST_CONTRAST)
     }
 
-    /// The line of a run, the same in every picture of its scene. Up to eight runs differ in both colour and dashes, up
-    /// to 64 in one of them. Colours are made lighter or darker to be visible on the background. `place` is the place
-    /// of the run ([`Self::places`]), `chosen` its chosen colour.
-    pub(crate) fn line(&self, place: usize, chosen: Option<Colour>) -> LineStyle {
-        let (colours, dashes) = (self.runs.len(), DASHES.len());
-        let colour = chosen.unwrap_or(self.runs[place % colours]);
-        LineStyle {
-            colour: readable(colour, self.background, LINE_CONTRAST),
-            dash: DASHES[(place + place / colours) % dashes],
-        }
+    /// The line of a run, the same in every picture of its scene. Colours are made lighter or darker to be visible on the background.
+    pub(crate) fn line(&self, place: LinePlace, chosen: Option<Colour>) -> LineStyle {
+        let colour = chosen.unwrap_or(self.runs[place.colour]);
+        LineStyle { colour: readable(colour, self.background, LINE_CONTRAST), dash: DASHES[place.dash] }
+    }
+
+    /// The dashes of the curve of a part at a place in a run.
+    pub(crate) fn dash(&self, part: usize) -> &'static [f64] {
+        DASHES[part % DASHES.len()]
     }
 }
 

@@ -24,8 +24,8 @@ pub(crate) struct ColourFile {
     #[schemars(length(min = 1, max = 80))]
     pub(crate) to: Option<String>,
     /// The values at both ends of the colour bar, in the field's unit. Values beyond have the colours of the ends.
-    /// Default: from zero to an estimate for the scene: a strain of 0.5, a displacement of half an element's edge, a
-    /// distance of half the body, the speed of a fall or at the start, the energy of an element with a strain of 0.5.
+    /// Default: from zero to an estimate for the scene: a strain of 0.5, a displacement of half an element's edge or of half the way of a
+    /// grab, a distance of half the body, the speed of a fall or at the start, the energy of an element with a strain of 0.5.
     pub(crate) range: Option<[f64; 2]>,
     /// The colour map.
     #[serde(default)]

@@ -28,9 +28,10 @@ pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
 pub use font::FontFiles;
 pub use palette::Theme;
-pub use plot::{Measure, Plot, PlotOf};
+pub use plot::{Measure, Part, Plot, PlotByBody, PlotOf};
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
+pub(crate) use run_lines::{LinePlace, Lined};
 pub(crate) use subject::{Subject, SubjectBody, SubjectRun};
 pub use view::{ColourScale, EdgeStyle, FloorStyle, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]

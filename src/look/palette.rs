@@ -81,7 +81,7 @@ pub(crate) struct Palette {
     pub spring_on_body: Colour,
     /// The sides of lines that a field colours.
     pub casing: Colour,
-    /// The lines of runs, by their places.
+    /// The lines of runs.
     pub runs: [Colour; 8],
 }
 

@@ -13,6 +13,26 @@ pub enum Plot {
     Diagnostic(Diagnostic),
     /// What is measured of one thing, over time or against a displacement.
     Of(PlotOf),
+    /// A diagnostic of each body over time, in place of that of all bodies of a run.
+    ByBody(PlotByBody),
+}
+
+/// A diagnostic of each body of every run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlotByBody {
+    /// The diagnostic.
+    pub plot: Diagnostic,
+    /// What has a curve of its own.
+    pub by: Part,
+}
+
+/// A part of a run with a curve of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Part {
+    /// Each body.
+    Body,
 }
 
 /// What is measured of one thing of a scene.
@@ -64,6 +84,12 @@ impl From<Diagnostic> for Plot {
     }
 }
 
+impl From<PlotByBody> for Plot {
+    fn from(all: PlotByBody) -> Self {
+        Self::ByBody(all)
+    }
+}
+
 impl From<PlotOf> for Plot {
     fn from(of: PlotOf) -> Self {
         Self::Of(of)
@@ -76,9 +102,12 @@ impl Plot {
         Diagnostic::ALL.iter().copied().map(Self::from).collect()
     }
 
-    /// The diagnostic that it is.
+    /// The diagnostic that it is, of all bodies or of each.
     pub(crate) fn diagnostic(&self) -> Option<Diagnostic> {
-        if let Self::Diagnostic(one) = self { Some(*one) } else { None }
+        match *self {
+            Self::Diagnostic(one) | Self::ByBody(PlotByBody { plot: one, .. }) => Some(one),
+            Self::Of(_) => None,
+        }
     }
 
     /// What is measured of one thing.
@@ -94,10 +123,8 @@ impl Plot {
 
     /// Whether it needs forces of contact or of constraints.
     pub(crate) fn is_of_forces(&self) -> bool {
-        match self {
-            Self::Diagnostic(one) => one.is_of_forces(),
-            Self::Of(one) => one.plot != Measure::Displacement,
-        }
+        self.diagnostic().is_some_and(Diagnostic::is_of_forces)
+            || self.of().is_some_and(|of| of.plot != Measure::Displacement)
     }
 }
 

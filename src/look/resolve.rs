@@ -73,7 +73,7 @@ impl View {
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
         view.look.font = font;
         view.clock = get(typed, "clock", report).unwrap_or_else(|| {
-            let is_gripped = scene.runs.iter().any(|run| run.is_gripped);
+            let is_gripped = scene.runs.iter().any(|run| !run.grips.is_empty());
             if is_gripped { "after the start".to_owned() } else { "after release".to_owned() }
         });
         let ghost: Option<String> = get(typed, "ghost", report);

@@ -18,27 +18,67 @@ pub(super) const DASHES: [&[f64]; 8] = [
     &[4.0, 8.0],
 ];
 
+/// The models with a colour of their own, by their keys, in the order of a palette's colours. Other models, recordings, and runs with
+/// several models have colours that are left.
+const MODELS: [&str; 8] =
+    ["shape-based", "mass-spring", "volume-springs", "linear", "corotational", "neo-hookean", "xpbd", "metric"];
+
+/// What decides the line of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Lined<'a> {
+    /// The key of its model; `None` for a recording, and for a run with several models.
+    pub model: Option<&'a str>,
+    /// Its chosen colour.
+    pub chosen: Option<Colour>,
+}
+
+/// The places of the colour and of the dashes of a run's line in a palette.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct LinePlace {
+    pub(super) colour: usize,
+    pub(super) dash: usize,
+}
+
 impl Palette {
-    /// The places of runs. Some runs have chosen colours. Each has the dashes of its number. The others avoid
-    /// colours that look like a chosen one, if enough are left.
-    pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
-        let (colours, dashes) = (self.runs.len(), DASHES.len());
+    /// The places of the lines of runs: runs of one model have one colour, and runs of one colour differ in dashes. Colours that look like
+    /// a chosen one are avoided, if others are left.
+    pub(crate) fn places(&self, runs: &[Lined<'_>]) -> Vec<LinePlace> {
         let seen = |colour| readable(colour, self.background, LINE_CONTRAST);
-        let is_like = |own: Colour, other: &Colour| least_difference(seen(own), seen(*other)) < RUNS_APART;
-        let is_free = self.runs.map(|own| !chosen.iter().flatten().any(|other| is_like(own, other)));
-        let keeps = |at: usize| chosen[at].is_some() || is_free[at % colours];
-        let is_taken = |colour: usize| (colour..chosen.len()).step_by(colours).any(|at| chosen[at].is_none());
-        let free = || (0..colours).filter(|&colour| is_free[colour]);
-        let mut others = free().filter(|&colour| !is_taken(colour)).chain(free().cycle());
-        let place = |at: usize| {
-            if keeps(at) {
-                return at;
-            }
-            let dash = (at + at / colours) % dashes;
-            // The place with this colour and these dashes.
-            others.next().map_or(at, |colour| colour + colours * ((dash + dashes - colour) % dashes))
+        let is_like = |own: Colour, other: Colour| least_difference(seen(own), seen(other)) < RUNS_APART;
+        let is_free =
+            |own: &usize| !runs.iter().filter_map(|run| run.chosen).any(|other| is_like(self.runs[*own], other));
+        let free: Vec<usize> = (0..self.runs.len()).filter(is_free).collect();
+        let free = if free.is_empty() { (0..self.runs.len()).collect() } else { free };
+        let home = |run: &Lined<'_>| {
+            let own = MODELS.iter().position(|&model| run.model == Some(model));
+            own.filter(|own| run.chosen.is_none() && free.contains(own))
         };
-        (0..chosen.len()).map(place).collect()
+        let homes: Vec<_> = runs.iter().map(home).collect();
+        let mut left =
+            free.iter().copied().filter(|&one| !homes.contains(&Some(one))).chain(free.iter().copied().cycle());
+        let mut places: Vec<LinePlace> = Vec::with_capacity(runs.len());
+        for (at, run) in runs.iter().enumerate() {
+            let is_alike =
+                |other: &Lined<'_>| run.model.is_some() && other.model == run.model && other.chosen.is_none();
+            let colour = match (run.chosen, homes[at], runs[..at].iter().position(is_alike)) {
+                (Some(_), ..) => 0,
+                (None, Some(home), _) => home,
+                (None, None, Some(other)) => places[other].colour,
+                (None, None, None) => left.next().unwrap_or_default(),
+            };
+            let dash = |colour: usize| {
+                let is_taken = |dash: &usize| {
+                    let mut before = runs.iter().zip(&places);
+                    before.any(|(one, place)| one.chosen == run.chosen && (place.colour, place.dash) == (colour, *dash))
+                };
+                let mut dashes = (at..at + DASHES.len()).map(|dash| dash % DASHES.len()).filter(|dash| !is_taken(dash));
+                dashes.next().map(|dash| LinePlace { colour, dash })
+            };
+            // A colour whose dashes are all taken gives way to another one.
+            let place = dash(colour).or_else(|| left.by_ref().take(self.runs.len()).find_map(dash));
+            places.push(place.unwrap_or(LinePlace { colour, dash: at % DASHES.len() }));
+        }
+        places
     }
 }
 
@@ -47,6 +87,50 @@ mod tests {
     use super::*;
     use crate::colour::contrast;
     use crate::look::Theme;
+
+    fn of(model: &str) -> Lined<'_> {
+        Lined { model: Some(model), chosen: None }
+    }
+
+    #[test]
+    fn models_have_their_colours_in_every_scene_and_runs_of_one_model_their_dashes() {
+        let palette = Palette::of(Theme::Light);
+        let lines = |runs: &[Lined<'_>]| palette.places(runs).iter().map(|at| [at.colour, at.dash]).collect::<Vec<_>>();
+        assert_eq!(lines(&MODELS.map(of)), [0, 1, 2, 3, 4, 5, 6, 7].map(|at| [at, at]));
+        assert_eq!(lines(&["mass-spring", "linear", "mass-spring"].map(of)), [[1, 0], [3, 1], [1, 2]]);
+        // Recordings, and models without a colour of their own, have what is left.
+        let all = [Lined::default(), of("shape-based"), of("another"), Lined::default(), of("another")];
+        assert_eq!(lines(&all), [[1, 0], [0, 1], [2, 2], [3, 3], [2, 4]]);
+        // Up to 64 lines differ.
+        for model in [Lined::default(), of("linear")] {
+            let many = lines(&vec![model; 64]);
+            assert!((0..many.len()).all(|at| !many[..at].contains(&many[at])), "{many:?}");
+        }
+    }
+
+    #[test]
+    fn colours_step_aside_for_chosen_ones() {
+        for palette in [Theme::Light, Theme::Dark].map(Palette::of) {
+            for chosen in palette.runs {
+                for at in 0..MODELS.len() {
+                    let mut runs = MODELS.map(of);
+                    runs[at].chosen = Some(chosen);
+                    let places = palette.places(&runs);
+                    let colours: Vec<_> = runs
+                        .iter()
+                        .zip(&places)
+                        .map(|(run, place)| run.chosen.unwrap_or(palette.runs[place.colour]))
+                        .collect();
+                    for (one, colour) in colours.iter().enumerate() {
+                        for other in &colours[..one] {
+                            assert!(least_difference(*colour, *other) >= RUNS_APART, "{colours:x?}");
+                        }
+                        assert!(!places[..one].iter().any(|other| other.dash == places[one].dash), "{places:?}");
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn runs_differ_from_each_other_and_from_turned_over_elements() {

@@ -2,7 +2,7 @@
 
 use crate::sim::geometry::{self, bounds};
 use crate::sim::model::ElasticModel;
-use crate::sim::{Body, Dimension, Field, Obstacle, State};
+use crate::sim::{Body, Dimension, Field, Grip, Obstacle, State};
 use glam::DVec3;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -42,8 +42,8 @@ pub(crate) struct SubjectRun<'a> {
     pub(crate) initial: &'a State,
     /// The model of each body.
     pub(crate) models: &'a [Arc<dyn ElasticModel>],
-    /// Whether nodes are held or dragged.
-    pub(crate) is_gripped: bool,
+    /// Nodes that are held or dragged.
+    pub(crate) grips: &'a [Grip],
 }
 
 impl<'a> Subject<'a> {
@@ -98,7 +98,12 @@ impl<'a> Subject<'a> {
         let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         match field {
             Field::Strain => LARGE,
-            Field::Displacement => most(&mut self.bodies.iter().map(|one| LARGE * one.side)),
+            Field::Displacement => {
+                // A body that is stretched gives way at both ends.
+                let grips = self.runs.iter().flat_map(|run| run.grips);
+                let shifts = grips.map(|grip| 0.5 * grip.motion.longest_way(0.0)).filter(|shift| shift.is_finite());
+                LARGE * most(&mut self.bodies.iter().map(|one| one.side).chain(shifts))
+            }
             Field::Distance => LARGE * self.extent(),
             Field::ElasticEnergy => {
                 let energy = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {

@@ -290,12 +290,12 @@ impl Writer<'_> {
         self.right(time, Weight::Regular, around.title(), palette.text, right - beside, baseline);
     }
 
-    /// Tally and count, lower left, each between two places from the left margin (px). With names of bodies the elements of
-    /// each are counted, too, if there is room.
+    /// Tally and count, lower left, each between two places from the left margin (px). The words below the count may go on to `end`: they
+    /// tell how many elements are flat or, with names of bodies, the count of each, if there is room.
     pub(super) fn count(
         &mut self,
         panel: Rectangle,
-        places: [[f64; 2]; 2],
+        (places, end): ([[f64; 2]; 2], f64),
         (tally, names): (&Tally, &[&str]),
         snapshot: &Snapshot,
     ) {
@@ -304,27 +304,29 @@ impl Writer<'_> {
         let Snapshot { turned_over, flat, broken, broken_springs, .. } = snapshot;
         let states = [&turned_over[..], &flat[..], &broken[..]];
         let [over, flattened, gone] = states.map(|state| state.iter().filter(|&&is_so| is_so).count());
-        // Where elements break, these are counted; else, if no element has turned over, flat ones.
-        let (count, state, which) = match over {
+        let (count, state, which) = match broken.is_empty() {
+            true => (over, TURNED_OVER, turned_over),
             // Without all of its springs an element may be whole.
-            _ if !broken_springs.is_empty() => (gone, "in pieces", broken),
-            _ if !broken.is_empty() => (gone, "broken", broken),
-            0 if flattened > 0 => (flattened, "flat", flat),
-            _ => (over, TURNED_OVER, turned_over),
+            false if !broken_springs.is_empty() => (gone, "in pieces", broken),
+            false => (gone, "broken", broken),
         };
         let (colour, second) = match (state, count) {
             (TURNED_OVER, 1..) => (self.palette.alarm_text, self.palette.alarm_text),
             _ => (self.palette.text, self.palette.second_text),
         };
         let [(first, tally_room), (left, free)] = places.map(|[from, to]| (room.left + from, to - from));
+        let end = room.left + end;
         let corner = [first, room.top + lines.caption];
         tally.draw(states, self.palette, self.scale, tally_room, corner, &mut self.marks);
         let [count, all] = [count, turned_over.len()].map(number::count);
         let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
+        let with_flat = (flattened > 0).then(|| format!("{state}, {} flat", number::count(flattened)));
         let of_bodies = of_bodies(state, names, tally.counts(which));
-        let fits = |text: &String| self.fonts.width(text, Weight::Regular, caption) <= free;
-        let state = of_bodies.filter(fits).unwrap_or_else(|| state.to_owned());
+        let fits = |text: &String, room| self.fonts.width(text, Weight::Regular, caption) <= room;
+        let with_flat = with_flat.filter(|text| fits(text, end - left));
+        let state = with_flat.or(of_bodies.filter(|text| fits(text, free))).unwrap_or_else(|| state.to_owned());
+        let free = free.max(end - left);
         let state = self.fonts.shortened(&state, Weight::Regular, caption, free);
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
     }
@@ -376,13 +378,13 @@ impl Writer<'_> {
     }
 
     /// The first of some scale bars, in words and px, that fits between two places from the left margin, centred there.
-    /// Returns its right end (px).
+    /// Returns its left and its right end (px).
     pub(super) fn scale_bar(
         &mut self,
         panel: Rectangle,
         [from, to]: [f64; 2],
         mut bars: impl Iterator<Item = (String, f64)>,
-    ) -> Option<f64> {
+    ) -> Option<[f64; 2]> {
         let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption, colour) = (self.scale.unit, self.scale.caption(), self.palette.second_text);
         let (text, pixels) = bars.find(|(text, pixels)| self.bar_width(text, *pixels) <= to - from + 1e-6)?;
@@ -396,7 +398,7 @@ impl Writer<'_> {
         }
         let wide = self.fonts.width(&text, Weight::Regular, caption);
         self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, room.top + lines.caption);
-        Some(from.midpoint(to) + 0.5 * pixels.max(wide))
+        Some([-0.5, 0.5].map(|side| from.midpoint(to) + side * pixels.max(wide)))
     }
 
     /// Hairlines between adjacent panels.

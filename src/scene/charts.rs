@@ -52,11 +52,25 @@ impl Scene {
                         "such a chart shows one scene; remove `against`".to_owned(),
                     );
                 }
+            } else if let Some((message, help)) = Self::lacks_bodies(chart, scenes) {
+                report.at(&path, format!("`{table}.charts[{index}]` is of each body, but {message}"), help.to_owned());
             } else if let Some(why) =
                 scenes.iter().map(|scene| scene.lacks(chart.diagnostic()?)).reduce(Option::and).flatten()
             {
                 report.at(&path, format!("`{table}.charts[{index}]` is {found}, which no run has"), why);
             }
+        }
+    }
+
+    /// Why a chart of each body shows nothing, and the remedy.
+    fn lacks_bodies(chart: &Plot, scenes: &[Self]) -> Option<(&'static str, &'static str)> {
+        let Plot::ByBody(_) = chart else { return None };
+        match scenes {
+            [scene] if scene.runs.iter().all(|run| run.of.len() < 2) => {
+                Some(("no run has several", "write the name of the diagnostic alone"))
+            }
+            [_] => None,
+            _ => Some(("there are several scenes", "write the name of the diagnostic alone, for the mean over scenes")),
         }
     }
 

@@ -169,9 +169,8 @@ fn subject<'a>(bodies: &'a [SceneBody], runs: &'a [Run], gravity: DVec3, obstacl
         SubjectBody { name, body, initial, side: *side, has_cells: *has_cells }
     };
     let run = |one: &'a Run| {
-        let Run { name, of, bodies, initial, models, step, .. } = one;
-        let (nodes, is_gripped) = (bodies.whole().len(), !one.grips.is_empty());
-        SubjectRun { name, step: *step, of, nodes, initial, models, is_gripped }
+        let Run { name, of, bodies, initial, models, step, grips, .. } = one;
+        SubjectRun { name, step: *step, of, nodes: bodies.whole().len(), initial, models, grips }
     };
     Subject { bodies: bodies.iter().map(body).collect(), gravity, obstacles, runs: runs.iter().map(run).collect() }
 }
@@ -200,8 +199,8 @@ impl Scene {
 
     /// Gives the runs their places, and the view the names of their bodies.
     fn place_runs(&mut self) {
-        let chosen: Vec<_> = self.runs.iter().map(|run| run.colour).collect();
-        let places = self.view.look.palette().places(&chosen);
+        let lined: Vec<_> = self.runs.iter().map(Run::lined).collect();
+        let places = self.view.look.palette().places(&lined);
         self.runs.iter_mut().zip(places).for_each(|(run, place)| run.place = place);
         self.view.bodies = self.names_of_bodies();
     }

@@ -51,7 +51,13 @@ impl<'s> Reference<'s> {
             for text in [Some(more), each].into_iter().flatten().filter(|text| !text.is_empty()) {
                 self.text += &format!("\n{text}\n");
             }
-            self.body(table_of(table).expect("a table"), &path);
+            let tables = tables_of(table);
+            for (at, one) in tables.iter().enumerate() {
+                if at > 0 {
+                    self.text += &format!("\nOr: {}\n", description(one));
+                }
+                self.body(one, &path);
+            }
             self.finish();
         }
     }
@@ -146,10 +152,24 @@ fn table_of(schema: &Value) -> Option<&Value> {
     schema.get("items").into_iter().chain(by_name(schema)).chain(alternatives).find_map(table_of)
 }
 
+/// The tables that a key holds: several if they are alternatives.
+fn tables_of(schema: &Value) -> Vec<&Value> {
+    match schema.get("items").unwrap_or(schema)["anyOf"].as_array() {
+        Some(alternatives) => {
+            let mut tables: Vec<_> = alternatives.iter().filter_map(table_of).collect();
+            tables.dedup_by_key(|table| &table["properties"]);
+            tables
+        }
+        None => table_of(schema).into_iter().collect(),
+    }
+}
+
 /// The type of a value in words, with its range.
 fn kind(schema: &Value) -> String {
     if let Some(alternatives) = schema["anyOf"].as_array() {
-        return alternatives.iter().map(kind).collect::<Vec<_>>().join(" or ");
+        let mut kinds: Vec<_> = alternatives.iter().map(kind).collect();
+        kinds.dedup();
+        return kinds.join(" or ");
     }
     if let Some(choices) = choices(schema) {
         // Choices with descriptions have a list of their own.
@@ -205,7 +225,7 @@ fn plural(kind: &str) -> String {
 /// The strings with descriptions that a value or its entries may be.
 fn described_choices(schema: &Value) -> Option<&Value> {
     let inner = if schema["type"] == "array" { &schema["items"] } else { schema };
-    let lists = [&inner["oneOf"], &inner["anyOf"][1]["oneOf"]];
+    let lists = [&inner["oneOf"], &inner["anyOf"][0]["oneOf"], &inner["anyOf"][1]["oneOf"]];
     lists.into_iter().find(|list| list[0]["const"].is_string())
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Recorded, Scene, SceneBody};
 use crate::colour::Colour;
+use crate::look::{LinePlace, Lined};
 use crate::sim::model::ElasticModel;
 use crate::sim::{
     Assembly, Body, Contacts, Grip, Integrator, Kernel, Load, Loading, Obstacle, PairContact, Side, State, Surroundings,
@@ -47,9 +48,8 @@ pub struct Run {
     pub tolerance: Option<f64>,
     /// The code that computes a step.
     pub kernel: Kernel,
-    /// The run's place in the palette, which gives its line ([`Self::line`]). In a figure of several scenes, runs of
-    /// one name have one place.
-    pub(crate) place: usize,
+    /// The place of its line in the palette ([`Self::line`]). In a figure of several scenes, runs of one name have one place.
+    pub(crate) place: LinePlace,
     /// A chosen colour of the run's lines. Other runs get different colours.
     pub colour: Option<Colour>,
 }
@@ -75,6 +75,13 @@ pub struct AtRest {
 }
 
 impl Run {
+    /// What decides its line.
+    pub(super) fn lined(&self) -> Lined<'static> {
+        let mut kinds = self.models_and_bodies().map(|(model, body)| model.properties(body).kind);
+        let model = kinds.next().filter(|first| kinds.all(|other| other == *first));
+        Lined { model, chosen: self.colour }
+    }
+
     /// All its bodies as one.
     pub fn body(&self) -> &Arc<Body> {
         self.bodies.whole()

@@ -61,9 +61,10 @@ fn each_of_several_bodies_has_a_curve_over_all_times() {
         of_bodies: vec![[1.0, 2.0, 3.0].map(moved).to_vec(), [4.0, 5.0, 6.0].map(moved).to_vec()],
         ..TimeSeries::new(0)
     };
-    let style = LineStyle { colour: [0; 3], dash: &[] };
-    let curves: Vec<_> = Series::of_bodies(Diagnostic::Kinetic, &of_run, &scene, style).collect();
-    assert_eq!(curves.iter().map(|curve| &*curve.name).collect::<Vec<_>>(), ["one", "other"]);
+    let palette = scene.view.look.palette();
+    let curves: Vec<_> = Series::of_bodies(Diagnostic::Kinetic, &of_run, (&scene, "run"), &palette).collect();
+    assert_eq!(curves.iter().map(|curve| &*curve.name).collect::<Vec<_>>(), ["run · one", "run · other"]);
+    assert!(curves[0].style.colour == curves[1].style.colour && curves[0].style.dash != curves[1].style.dash);
     assert_eq!(curves[1].points, [[0.0, 4.0], [0.1, 5.0], [0.2, 6.0]]);
     assert_eq!(curves[0].points, [[0.0, 1.0], [0.1, 2.0], [0.2, 3.0]]);
 }

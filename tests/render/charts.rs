@@ -302,7 +302,8 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let arms: Vec<_> = picture.curves.iter().filter(is_arm).collect();
     assert_eq!(arms.len(), 2);
     let middle = |curve: &Curve| (curve.points[0][0] + curve.points[1][0]) / 2.0;
-    let of_calm: Vec<_> = series(&picture).into_iter().filter(|one| one.colour != arms[0].colour).collect();
+    let all = series(&picture);
+    let of_calm: Vec<_> = all.iter().filter(|one| one.dash == all[0].dash).collect();
     assert_eq!(middle(arms[0]), middle(arms[1]));
     // The time of the divergence as a fraction of the width, which the line of the present moment now shows.
     let now = moments(&picture)[0].points[0];
@@ -385,7 +386,7 @@ fn eight_runs_of_one_model_are_told_apart() {
         let own: Vec<_> = own.filter(|curve| !circles(&picture).contains(curve)).collect();
         assert_eq!(own.len(), 8);
         let looks: Vec<_> = own.iter().map(|curve| look_of(curve)).collect();
-        each_differs(&looks.iter().map(|look| look.0).collect::<Vec<_>>());
+        assert!(looks.iter().all(|look| look.0 == looks[0].0), "one model has one colour");
         each_differs(&looks.iter().map(|look| look.1.clone()).collect::<Vec<_>>());
         for (run, curve) in scene.runs.iter().zip(&own) {
             let line = run.line(&picture.palette);
@@ -421,6 +422,44 @@ fn eight_runs_of_one_model_are_told_apart() {
         let shown: Vec<_> = shown.map(look_of).collect();
         assert!(shown.iter().all(|look| [&looks[6], &looks[2]].contains(&look)) && shown.len() == 2, "{shown:?}");
     }
+}
+
+/// Several bodies have one curve a run, or on request one each, with a name. Curves whose names have no room are left out, and counted.
+#[test]
+fn bodies_have_curves_with_names_or_none() {
+    let body = |at: u32| {
+        let lattice = "lattice = { cells = [1, 1, 1], side = 0.1 }";
+        let offset = format!("offset = [{}, {}, 0]", 0.2 * f64::from(at), 0.01 * f64::from(at));
+        format!("[[body]]\nname = 'body {at}'\n{lattice}\n{offset}\n")
+    };
+    let charts = |count: u32, charts: &str| {
+        let bodies: String = (0..count).map(body).collect();
+        let runs: String = ["shape-based", "mass-spring"]
+            .map(|kind| format!("[[run]]\nname = '{kind}'\nmodel = {{ kind = '{kind}', stiffness = 1e3 }}\n"))
+            .concat();
+        let scene = parse(&format!(
+            "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.2 }}\n{bodies}{runs}\
+             [view]\nsize = [1280, 840]\ncharts = [{charts}]\n"
+        ));
+        let frame = Runner::new(&scene, &[0, 1]).frame(3);
+        compose(&scene, &frame)
+    };
+    let is_name = |word: &&TextRun| word.text.contains(" · ");
+    let whole = charts(3, "'kinetic'");
+    assert_eq!((series(&whole).len(), whole.words.iter().filter(is_name).count()), (2, 0));
+    let split = charts(3, "{ plot = 'kinetic', by = 'body' }");
+    let mut names: Vec<_> = split.words.iter().filter(is_name).map(|word| word.text.clone()).collect();
+    names.sort_unstable();
+    let expected = ["mass-spring", "shape-based"].map(|run| [0, 1, 2].map(|at| format!("{run} · body {at}")));
+    assert_eq!(names, expected.concat());
+    let looks: Vec<_> = series(&split).into_iter().map(look_of).collect();
+    assert_eq!(looks.len(), 6, "{looks:?}");
+    each_differs(&looks);
+    let many = charts(12, "{ plot = 'kinetic', by = 'body' }");
+    let named = many.words.iter().filter(is_name).count();
+    let told = many.words.iter().find(|word| word.text.ends_with(" of 24 curves")).map(|word| word.text.clone());
+    assert!((2..24).contains(&named) && told == Some(format!("{named} of 24 curves")), "{named} {told:?}");
+    assert_eq!(series(&many).len(), named);
 }
 
 /// At the usual sizes and in the usual columns one chart shows all curves, and names them.

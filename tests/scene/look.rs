@@ -2,8 +2,8 @@
 
 use super::mistakes::{PLANE, case};
 use super::{WORLD, bad, expect, good};
-use localshape::colour::{Vision, contrast, difference};
-use localshape::look::{ColourMap, Ghost, Palette, Style, Theme, Traced};
+use localshape::colour::contrast;
+use localshape::look::{ColourMap, Ghost, Style, Theme, Traced};
 use localshape::scene::{Limits, Scene, SceneError};
 
 const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
@@ -36,21 +36,22 @@ fn of_runs(view: &str, runs: &[&str]) -> String {
 }
 
 #[test]
-fn runs_have_their_places_colours_or_their_own() {
+fn runs_have_the_colours_of_their_models_or_their_own() {
     for theme in ["light", "dark"] {
-        let scene =
-            good(&of_runs(&format!("theme = '{theme}'"), &["", "colour = 'royalblue'", "", "colour = '#4169e1'"]));
+        let springs = "[[run]]\nname = 'Springs'\nmodel = { kind = 'mass-spring', stiffness = 1 }";
+        let chosen = "colour = '#4169e1'";
+        let scene = good(&of_runs(&format!("theme = '{theme}'"), &["", "colour = 'royalblue'", chosen, springs]));
         let palette = scene.view.look.palette();
         let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&palette)).collect();
         let own = [65, 105, 225];
-        // On a light background the first colour resembles royal blue and is replaced by the second, which is free.
-        let first = if theme == "light" { 1 } else { 0 };
+        // On a light background the colour of the model resembles royal blue, and one that is left replaces it.
+        let first = if theme == "light" { 2 } else { 0 };
         assert_eq!(
             lines.iter().map(|line| line.colour).collect::<Vec<_>>(),
-            [palette.runs[first], own, palette.runs[2], own]
+            [palette.runs[first], own, own, palette.runs[first], palette.runs[1]]
         );
         // The same colour, but different dashes.
-        assert_ne!(lines[1].dash, lines[3].dash);
+        assert!(lines[1].dash != lines[2].dash && lines[0].dash != lines[3].dash);
     }
     // Each line has enough contrast with the background.
     let scene = good(&of_runs("background = '#808080'", &[""; 8]));
@@ -61,42 +62,6 @@ fn runs_have_their_places_colours_or_their_own() {
     let digest = |said: &str| good(&of_runs("", &[said])).digest;
     assert_eq!(digest("colour = 'royalblue'"), digest("colour = '#4169E1'"));
     assert_ne!(digest("colour = 'royalblue'"), digest(""));
-}
-
-/// The least difference of the colours of a scene's runs, for any colour vision, except for runs with the same chosen
-/// colour.
-fn least_apart(scene: &Scene) -> f64 {
-    let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).colour).collect();
-    let pairs = (0..colours.len()).flat_map(|at| (0..at).map(move |other| [at, other]));
-    let seen = pairs.flat_map(|two| Vision::ALL.map(|sight| (two.map(|at| colours[at]), sight)));
-    seen.map(|([one, other], sight)| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
-}
-
-#[test]
-fn colours_of_runs_step_aside_for_chosen_ones() {
-    for theme in ["light", "dark"] {
-        let view = format!("theme = '{theme}'");
-        // The colour at each place of the palette, chosen for another run.
-        for colour in Palette::of(if theme == "light" { Theme::Light } else { Theme::Dark }).runs {
-            let [red, green, blue] = colour;
-            let chosen = format!("colour = '#{red:02x}{green:02x}{blue:02x}'");
-            for at in 0..8 {
-                let mut said = [""; 8];
-                said[at] = &chosen;
-                let scene = good(&of_runs(&view, &said));
-                assert!(least_apart(&scene) >= 15.0, "{chosen} of run {at}: {}", least_apart(&scene));
-                let dashes: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).dash).collect();
-                assert!((0..8).all(|at| !dashes[..at].contains(&dashes[at])), "{dashes:?}");
-            }
-        }
-    }
-    let scene = good(&of_runs("", &["", "colour = 'teal'", ""]));
-    assert!(least_apart(&scene) >= 15.0, "{}", least_apart(&scene));
-    // Runs of the same colour have different dashes.
-    let navy = "colour = 'navy'";
-    let scene = good(&of_runs("", &[navy, navy, navy]));
-    let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).dash).collect();
-    assert!(lines[0] != lines[1] && lines[1] != lines[2] && lines[0] != lines[2]);
 }
 
 #[test]

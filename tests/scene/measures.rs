@@ -46,6 +46,12 @@ fn charts_name_things_that_are_there() {
     case("'hold_forc'", "1:16 did you mean \"hold_force\"?");
     let twice = "{ plot = 'force', of = 'hold[0]' }, { plot = 'force', of = 'hold[0]' }";
     case(twice, "1:52 as is `view.charts[0]`");
+    case(
+        "{ plot = 'energy', by = 'body' }",
+        "1:16 is of each body, but no run has several write the name of the diagnostic alone",
+    );
+    case("{ plot = 'enrgy', by = 'body' }", "1:25 did you mean \"energy\"?");
+    case("{ plot = 'energy', by = 'bodies' }", "1:40 expected \"body\"");
 }
 
 #[test]

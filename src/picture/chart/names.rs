@@ -91,7 +91,7 @@ pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: PlotArea, nam
 }
 
 /// The number of names that fit above each other into a height (px).
-fn fitting(height: f64, unit: f64) -> usize {
+pub(super) fn fitting(height: f64, unit: f64) -> usize {
     (height / (GAP * unit) + 1e-6) as usize
 }
 

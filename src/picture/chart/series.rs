@@ -1,7 +1,7 @@
 //! Series of one run in a chart, in one scene or as the mean over several, and their range.
 
 use super::layer::{Layer, value};
-use crate::look::{LineStyle, Measure, Palette, Plot, PlotOf};
+use crate::look::{LineStyle, Measure, Palette, Plot, PlotByBody, PlotOf};
 use crate::picture::layout::steps::{HAIR, STRONG};
 use crate::picture::number;
 use crate::runner::history::TimeSeries;
@@ -42,10 +42,14 @@ pub(in crate::picture) struct Series {
     pub is_end: bool,
 }
 
-/// The line of a run in all charts of a picture and beside its name. One chart of counts makes all lines solid: dashed steps
-/// look ragged.
-pub(in crate::picture) fn style(charts: &[Plot], line: LineStyle) -> LineStyle {
-    if charts.contains(&Diagnostic::TurnedOver.into()) { LineStyle { dash: &[], ..line } } else { line }
+/// The line of a run in all charts of a picture and beside its name. One chart of counts makes lines solid, as dashed steps look ragged,
+/// but not those of runs that share a colour.
+pub(in crate::picture) fn style(charts: &[Plot], run: usize, scene: &Scene, palette: &Palette) -> LineStyle {
+    let line = scene.runs[run].line(palette);
+    let mut others = scene.runs.iter().enumerate().filter(|&(other, _)| other != run);
+    let is_alone = !others.any(|(_, other)| other.line(palette).colour == line.colour);
+    let is_solid = is_alone && charts.contains(&Diagnostic::TurnedOver.into());
+    if is_solid { LineStyle { dash: &[], ..line } } else { line }
 }
 
 impl Series {
@@ -53,7 +57,7 @@ impl Series {
     pub(super) fn new(charts: &[Plot], at: usize, of_run: &TimeSeries, scene: &Scene, style: LineStyle) -> Self {
         let diverged = of_run.divergence.map(|divergence| divergence.time);
         let one = match &charts[at] {
-            &Plot::Diagnostic(diagnostic) => {
+            &Plot::Diagnostic(diagnostic) | &Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
                 Self::over(diagnostic, of_run, of_run.diagnostics.iter().map(|all| diagnostic.of(all)), style)
             }
             Plot::Of(of) => {
@@ -114,17 +118,19 @@ impl Series {
         }
     }
 
-    /// A diagnostic of each body of a run of a scene, if it has several.
-    pub(super) fn of_bodies(
+    /// A diagnostic of each body of a run of a scene, if it has several, in the colour of the run and with the dashes of the body's place.
+    pub(super) fn of_bodies<'a>(
         diagnostic: Diagnostic,
-        of_run: &TimeSeries,
-        scene: &Scene,
-        style: LineStyle,
-    ) -> impl Iterator<Item = Self> {
-        scene.runs[of_run.run].several(scene).zip(&of_run.of_bodies).map(move |((body, _), all)| {
-            let values = all.iter().map(|all| diagnostic.of(all));
-            let one = Self::over(diagnostic, of_run, values, style);
-            Self { name: body.to_owned(), is_part: true, ..one }
+        of_run: &'a TimeSeries,
+        (scene, run): (&'a Scene, &'a str),
+        palette: &'a Palette,
+    ) -> impl Iterator<Item = Self> + 'a {
+        let colour = scene.runs[of_run.run].line(palette).colour;
+        let bodies = scene.runs[of_run.run].several(scene).zip(&of_run.of_bodies).enumerate();
+        bodies.map(move |(at, ((body, _), all))| {
+            let style = LineStyle { colour, dash: palette.dash(at) };
+            let one = Self::over(diagnostic, of_run, all.iter().map(|all| diagnostic.of(all)), style);
+            Self { name: format!("{run} · {body}"), is_part: true, ..one }
         })
     }
 
@@ -191,7 +197,9 @@ pub(in crate::picture) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'stati
 /// The name of what a chart shows of a scene.
 pub(super) fn title(plot: &Plot, scene: &Scene) -> String {
     let mut name = match plot {
-        Plot::Diagnostic(diagnostic) => name(*diagnostic, scene).to_owned(),
+        Plot::Diagnostic(diagnostic) | Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
+            name(*diagnostic, scene).to_owned()
+        }
         Plot::Of(of) => format!("{} of {}", of.plot.words()[0], of.of),
     };
     if let Some(first) = name.get_mut(..1) {
@@ -203,7 +211,9 @@ pub(super) fn title(plot: &Plot, scene: &Scene) -> String {
 /// A value in a chart, with its unit, of a body of a size (m).
 pub(super) fn in_words(plot: &Plot, value: f64, extent: f64) -> String {
     match plot {
-        Plot::Diagnostic(diagnostic) => number::value(*diagnostic, value, extent),
+        Plot::Diagnostic(diagnostic) | Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
+            number::value(*diagnostic, value, extent)
+        }
         Plot::Of(of) if of.plot == Measure::Displacement => number::length(value, extent),
         Plot::Of(of) => number::with_unit(value, of.plot.words()[1]),
     }

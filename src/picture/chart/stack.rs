@@ -3,7 +3,7 @@
 
 use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
-use super::names::Shortened;
+use super::names::{Shortened, fitting};
 use super::series::{self, Series};
 use super::{Chart, PlotArea};
 use crate::look::Plot;
@@ -23,8 +23,6 @@ use std::sync::Arc;
 const MOST_TICKS: usize = 4;
 /// The most numbers along an axis of displacements.
 const MOST_WAYS: usize = 9;
-/// With more curves than this, those of bodies are left out.
-const MOST_CURVES: usize = 12;
 /// The meaning of a band where a curve is dense.
 const BAND: [&str; 2] = ["band:", "least to most"];
 
@@ -37,10 +35,12 @@ struct Quantity {
     notes: Vec<String>,
     kind: Kind,
     unit: &'static str,
-    /// One for each run shown, then one for each body of runs with several.
+    /// One for each run shown, or for each of its bodies.
     series: Vec<Series>,
-    /// The number of runs shown.
+    /// The number of runs shown; 0 if each body has its series.
     runs: usize,
+    /// The names at the ends of curves, if there is room for them.
+    ends: Option<Shortened>,
     /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
     /// Whether the axis to the right is that of a displacement, and its range (m).
@@ -57,15 +57,13 @@ impl Quantity {
         charts: &[Plot],
         of_scenes: &[(&Scene, &History)],
         writer: &Writer<'_>,
-        label: impl Fn(&str) -> String,
+        (room, label): (f64, impl Fn(&str) -> String),
     ) -> Self {
         let (scene, plot) = (of_scenes[0].0, &charts[at]);
         let diagnostic = plot.diagnostic();
         let one = |(scene, history): &(&Scene, &History), name: &str| {
             let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
-            own.map(|own| {
-                Series::new(charts, at, own, scene, series::style(charts, scene.runs[own.run].line(writer.palette)))
-            })
+            own.map(|own| Series::new(charts, at, own, scene, series::style(charts, own.run, scene, writer.palette)))
         };
         let of_run = |run: usize| {
             let name = &scene.runs[run].name;
@@ -73,21 +71,21 @@ impl Quantity {
             mean.map(|mean| Series { name: label(&mean.name), ..mean })
         };
         let mut series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
-        let runs = series.len();
-        // A mean over scenes has no bodies.
-        for (own, of_run) in of_scenes[0].1.series.iter().zip(0..runs).filter(|_| of_scenes.len() == 1) {
-            let style = series[of_run].style;
-            series.extend(diagnostic.into_iter().flat_map(|one| Series::of_bodies(one, own, scene, style)));
-        }
-        if series.len() > MOST_CURVES {
-            series.truncate(runs);
-        }
+        let runs = if let Plot::ByBody(all) = plot {
+            let of_bodies = |(own, run): (_, Series)| {
+                let bodies: Vec<_> = Series::of_bodies(all.plot, own, (scene, &run.name), writer.palette).collect();
+                if bodies.is_empty() { vec![run] } else { bodies }
+            };
+            series = of_scenes[0].1.series.iter().zip(series).flat_map(of_bodies).collect();
+            0
+        } else {
+            series.len()
+        };
         let counted = diagnostic.filter(|one| matches!(one, Diagnostic::TurnedOver | Diagnostic::Broken));
         let in_parts = counted.map(|counted| of_parts(counted, of_scenes));
         // Springs and elements have no common scale but their shares.
         let is_share = in_parts.as_deref() == Some(SHARES);
         if is_share {
-            series.truncate(runs);
             series.iter_mut().for_each(|one| one.divide_by(0.01 * whole(Diagnostic::Broken, &scene.runs[one.run])));
         }
         let is_count = counted.is_some() && !is_share;
@@ -101,6 +99,7 @@ impl Quantity {
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
             range: series::range(&series, counted.is_none()),
             against: (!plot.is_over_time()).then(|| series::ways(&series)),
+            ends: Shortened::new(writer.fonts, &series, writer.scale.type_unit(), room),
             series,
             runs,
             extent: scene.extent(),
@@ -130,20 +129,27 @@ impl Quantity {
         self.range.map(|range| Stretch::new(self.kind, range, self.unit, self.extent, most))
     }
 
-    /// The chart over an axis of time, or an own axis of displacements, at a place.
-    fn chart(&self, time: Axis, writer: &Writer<'_>, place: PlotArea) -> Chart {
+    /// The series that are drawn at a place, with names up to an extent above and below it (px). Curves of bodies without a name would say
+    /// nothing; those of runs have the colours and dashes beside the runs' names.
+    fn shown(&self, place: PlotArea, beyond: f64) -> &[Series] {
+        let named = self.ends.as_ref().map_or(0, |_| fitting(place.bottom - place.top + 2.0 * beyond, place.unit));
+        &self.series[..if self.runs == 0 { named.min(self.series.len()) } else { self.series.len() }]
+    }
+
+    /// The chart of some series over an axis of time, or an own axis of displacements, at a place.
+    fn chart(&self, series: &[Series], time: Axis, writer: &Writer<'_>, place: PlotArea) -> Chart {
         let rows = ((place.bottom - place.top) / (ROW * place.unit)) as usize + 1;
         let y = Axis(self.values(rows.min(MOST_TICKS)).into_iter().collect());
         if let Some(ways) = self.against {
             let most = ((place.right - place.left) / (2.0 * MARGIN * place.unit)) as usize;
             let x = ways.map(|ways| Stretch::new(Kind::Value, ways, "m", self.extent, most.clamp(2, MOST_WAYS)));
-            let layers = if y.0.is_empty() { Vec::new() } else { self.series.iter().map(Series::trace).collect() };
+            let layers = if y.0.is_empty() { Vec::new() } else { series.iter().map(Series::trace).collect() };
             return Chart { x: Axis(x.into_iter().collect()), y, layers, annotations: Vec::new() };
         }
-        let areas = self.series.iter().filter_map(|one| one.area(writer.palette));
-        let layers = areas.chain(self.series.iter().flat_map(Series::curves));
+        let areas = series.iter().filter_map(|one| one.area(writer.palette));
+        let layers = areas.chain(series.iter().flat_map(Series::curves));
         let layers = layers.filter(|_| !y.0.is_empty()).collect();
-        let crosses = self.series.iter().filter(|one| !one.points.is_empty()).filter_map(cross);
+        let crosses = series.iter().filter(|one| !one.points.is_empty()).filter_map(cross);
         Chart { x: time, layers, annotations: crosses.collect(), y }
     }
 
@@ -223,8 +229,6 @@ fn cross(series: &Series) -> Option<Annotation> {
 /// Charts above each other.
 pub(in crate::picture) struct Stack {
     quantities: Vec<Quantity>,
-    /// Names at the ends of curves, if there is room for them, the same beside all charts.
-    ends: Option<Shortened>,
     /// The widths of the names, and of the numbers beside the charts with gaps (px).
     pub names_width: f64,
     pub numbers_width: f64,
@@ -244,13 +248,11 @@ impl Stack {
     ) -> Self {
         let (fonts, scale) = (writer.fonts, writer.scale);
         let unit = scale.type_unit();
-        let quantities = (0..charts.len()).map(|at| Quantity::new(at, charts, of_scenes, writer, &label));
+        let quantities = (0..charts.len()).map(|at| Quantity::new(at, charts, of_scenes, writer, (room, &label)));
         let mut quantities: Vec<_> = quantities.collect();
         quantities.sort_by_key(|one| one.against.is_some());
         let widest = |wide: &dyn Fn(&Quantity) -> f64| quantities.iter().map(wide).fold(0.0, f64::max);
         Self {
-            // The lines of all charts have the same names.
-            ends: quantities.iter().find_map(|one| Shortened::new(fonts, &one.series, unit, room)),
             names_width: widest(&|one| one.name_width(fonts, scale)),
             numbers_width: widest(&|one| one.numbers_width(fonts, unit)),
             quantities,
@@ -259,13 +261,12 @@ impl Stack {
 
     /// The width of the names right of the charts (px).
     pub(in crate::picture) fn ends_width(&self) -> f64 {
-        self.ends.as_ref().map_or(0.0, |ends| ends.width)
+        self.quantities.iter().filter_map(|one| one.ends.as_ref()).map(|ends| ends.width).fold(0.0, f64::max)
     }
 
     /// The most names at the ends of the curves of a chart.
     pub(in crate::picture) fn names(&self) -> usize {
-        let names = self.quantities.iter().map(|one| one.series.len()).max().unwrap_or(0);
-        self.ends.as_ref().map_or(0, |_| names)
+        self.quantities.iter().filter(|one| one.ends.is_some()).map(|one| one.series.len()).max().unwrap_or(0)
     }
 
     pub(in crate::picture) fn count(&self) -> usize {
@@ -302,7 +303,7 @@ impl Stack {
         let x = Axis::of_time(room.span, unit, span, split);
         let placed = self.quantities.iter().zip(&room.charts).map(|(one, &[top, bottom])| {
             let place = PlotArea { left, right, top, bottom, unit, line };
-            (one.chart(x.clone(), ground, place), place)
+            (one.chart(one.shown(place, room.beyond), x.clone(), ground, place), place)
         });
         let mut placed: Vec<_> = placed.collect();
         let over_time = self.over_time().min(placed.len());
@@ -310,13 +311,16 @@ impl Stack {
             flags(ground, marked, room.rings, (&first.0, first.1), placed[over_time - 1].1.bottom);
         }
         for (at, (one, (chart, place))) in self.quantities.iter().zip(&mut placed).enumerate() {
-            if let Some(names) = self.ends.as_ref().map(|ends| ends.at(&one.series)) {
+            let shown = one.shown(*place, room.beyond);
+            if let Some(names) = one.ends.as_ref().map(|ends| ends.at(shown)) {
                 chart.annotations.push(Annotation::Names { names, beyond: [room.beyond; 2] });
             }
             chart.ground(ground, *place, at + 1 >= over_time);
             chart.curves(curves, *place);
             let Some(left) = room.names else { continue };
-            let mut notes: Vec<_> = one.notes.iter().map(|note| &**note).collect();
+            let few =
+                (shown.len() < one.series.len()).then(|| format!("{} of {} curves", shown.len(), one.series.len()));
+            let mut notes: Vec<_> = one.notes.iter().chain(&few).map(|note| &**note).collect();
             if chart.layers.iter().any(|layer| layer.has_band(chart, *place)) {
                 notes.extend(BAND);
             }

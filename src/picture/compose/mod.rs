@@ -32,9 +32,9 @@ use super::layout::{Part, Rectangle, Scale, WordsShown, baselines};
 use super::number;
 use super::text::Fonts;
 use super::{Framing, Picture};
-use crate::colour::Colour;
-use crate::look::Palette;
+use crate::colour::{Colour, LINE_CONTRAST, readable};
 use crate::look::ramp::ramp;
+use crate::look::{BODIES, Palette};
 use crate::runner::Frame;
 use crate::runner::history::{History, NearObstacles, TimeSeries};
 use crate::scene::{Run, Scene};
@@ -114,7 +114,7 @@ impl<'a> Composer<'a> {
         let mut composer = Self {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
-            palette: scene.view.look.palette(),
+            palette: with_visible_lines(scene.view.look.palette(), scene),
             fonts: Fonts::new(&scene.view.look.font),
             bodies,
             bodies_of,
@@ -260,16 +260,18 @@ impl<'a> Composer<'a> {
             // The shown state of a run that diverges lacks the present number of turned-over elements.
             let is_counted = run.shown().status == Status::Ok;
             let count = place(NumberPart::Tally).zip(place(NumberPart::Count)).filter(|_| is_counted);
+            // All panels have one scale, so there is one bar.
+            let bar = framing.zip(place(NumberPart::Bar)).filter(|_| at == 0).and_then(|(framing, between)| {
+                writer.scale_bar(viewport, between, self.bars(viewport, framing, writer.scale))
+            });
             if let Some((place_of_tally, count)) = count {
                 let tally = &self.bodies(run.run).tally;
-                writer.count(viewport, [place_of_tally, count], (tally, &self.names_of(run.run)), run.shown());
+                let next = bar.map(|bar| bar[0]).or(place(NumberPart::Number).map(|number| number[0]));
+                let end = next.map_or(count[1], |left| (left - writer.scale.gap()).max(count[1]));
+                let places = ([place_of_tally, count], end);
+                writer.count(viewport, places, (tally, &self.names_of(run.run)), run.shown());
             }
-            let mut taken = count.map_or(0.0, |(_, [_, end])| end);
-            // All panels have one scale, so there is one bar.
-            if let Some((framing, between)) = framing.zip(place(NumberPart::Bar)).filter(|_| at == 0) {
-                let end = writer.scale_bar(viewport, between, self.bars(viewport, framing, writer.scale));
-                taken = end.unwrap_or(taken);
-            }
+            let taken = bar.or(count.map(|(_, count)| count)).map_or(0.0, |[_, end]| end);
             match caption::divergence(run, self.scene.duration) {
                 // Without a row for numbers it would lie over the name.
                 Some(_) if layout.written.left_out.contains(&Part::Numbers) => {}
@@ -290,4 +292,17 @@ impl<'a> Composer<'a> {
         let lens = Lens::new(&scene.view, framing, scene.dimension(), viewport.map(f64::from), scale.unit);
         lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
     }
+}
+
+/// The palette of a scene. Bodies of segments, such as chains, are lines: their colours are as visible as those of other lines.
+fn with_visible_lines(mut palette: Palette, scene: &Scene) -> Palette {
+    let is_line = |body: &usize| scene.bodies[*body].body.elements().iter().all(|nodes| nodes.len() == 2);
+    for at in 0..BODIES {
+        let mut bodies = scene.runs.iter().flat_map(|run| run.of.iter().skip(at).step_by(BODIES)).peekable();
+        if bodies.peek().is_some() && bodies.all(is_line) {
+            let visible = |colour: &mut Colour| *colour = readable(*colour, palette.background, LINE_CONTRAST);
+            [&mut palette.bodies[at], &mut palette.bodies_flat[at]].into_iter().for_each(visible);
+        }
+    }
+    palette
 }

@@ -112,10 +112,12 @@ impl<'a> Words<'a> {
         let view = self.view();
         let has_arrows = view.visible.displacements && view.colour.is_none();
         let has_curves = have_colours_of_runs(view);
-        let run = self.scene.runs.get(run).filter(|_| view.labels.legend && (has_chart || has_arrows || has_curves))?;
-        let line = run.line(self.palette);
+        if !view.labels.legend || !(has_chart || has_arrows || has_curves) {
+            return None;
+        }
         // Without a chart, only colours count.
-        Some(if has_chart { style(&view.charts, line) } else { LineStyle { dash: &[], ..line } })
+        let line = style(&view.charts, run, self.scene, self.palette);
+        Some(if has_chart { line } else { LineStyle { dash: &[], ..line } })
     }
 
     /// Whether the clock has no room beside the heading of its panel.

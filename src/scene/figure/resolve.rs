@@ -114,16 +114,16 @@ impl Scenes<'_, '_, '_> {
 pub(super) fn share_lines(scenes: &mut [Scene]) {
     let Some(first) = scenes.first() else { return };
     let palette = first.view.look.palette();
-    let (mut numbers, mut chosen) = (HashMap::new(), Vec::new());
+    let (mut numbers, mut lined) = (HashMap::new(), Vec::new());
     for run in scenes.iter().flat_map(|scene| &scene.runs) {
         numbers.entry(run.name.clone()).or_insert_with(|| {
-            chosen.push(run.colour);
-            chosen.len() - 1
+            lined.push(run.lined());
+            lined.len() - 1
         });
     }
-    let places = palette.places(&chosen);
+    let places = palette.places(&lined);
     for run in scenes.iter_mut().flat_map(|scene| &mut scene.runs) {
         let number = numbers[&run.name];
-        (run.place, run.colour) = (places[number], chosen[number]);
+        (run.place, run.colour) = (places[number], lined[number].chosen);
     }
 }

@@ -6,6 +6,7 @@ use super::grips::SceneGrip;
 use super::loads::SceneLoad;
 use super::recordings::{ReadRecording, Shown};
 use super::steps::Steps;
+use crate::look::LinePlace;
 use crate::reading::captions;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::words;
@@ -41,7 +42,7 @@ fn bare(typed: &RunFile, of: Vec<usize>, (bodies, initial): (Arc<Assembly>, Stat
         step: f64::NAN,
         tolerance: None,
         kernel: Kernel::Reference,
-        place: 0,
+        place: LinePlace::default(),
         colour: typed.colour.map(|colour| colour.0),
     }
 }

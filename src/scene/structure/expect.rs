@@ -7,7 +7,8 @@ use serde_json::Value as Json;
 /// The types that a schema allows, in words.
 pub(super) fn expected(schema: &Json) -> String {
     if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-        let names: Vec<_> = branches.iter().map(expected).collect();
+        let mut names: Vec<_> = branches.iter().map(expected).collect();
+        names.dedup();
         return list(&names, "or", |name| name.into());
     }
     if let Some(choices) = choices(schema) {

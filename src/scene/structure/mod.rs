@@ -349,9 +349,13 @@ fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     Some(format!("write {number}: a number without quotation marks{comma}"))
 }
 
-/// The alternative of a schema that has the type of a value.
+/// The alternative of a schema that has the type of a value, of several tables the first one that knows most of its keys.
 fn alternative<'s>(schema: &'s Json, value: &DeValue<'_>) -> Option<&'s Json> {
-    schema.get("anyOf")?.as_array()?.iter().find(|branch| fits(branch, value))
+    let known = |branch: &&Json| {
+        let keys = value.as_table().into_iter().flat_map(|table| table.keys());
+        keys.filter(|key| branch["properties"].get(key.get_ref().as_ref()).is_some()).count()
+    };
+    schema.get("anyOf")?.as_array()?.iter().filter(|branch| fits(branch, value)).rev().max_by_key(known)
 }
 
 /// Whether a value has the type of a schema without alternatives.

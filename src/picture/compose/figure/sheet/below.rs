@@ -99,9 +99,14 @@ impl TallyKey {
 pub(super) struct Below<'a> {
     /// The tally, if there is one, the turned-over and the flat elements, and its width (px).
     tally: Option<(&'a Tally, [&'a [bool]; 3], f64)>,
-    /// The number of broken elements of a run that breaks, else of turned-over ones or, if there are none, of flat ones, then a diagnostic; or that the run diverges.
-    texts: Vec<(String, Weight, f64, Colour)>,
+    /// The number of broken elements of a run that breaks, else of turned-over ones, then of flat ones, then a diagnostic; or that the run diverges.
+    texts: [Option<Text>; 3],
 }
+
+/// Which of the number of flat elements, which the tally shows as well, and the diagnostic are written.
+pub(super) type Written = [bool; 2];
+
+type Text = (String, Weight, f64, Colour);
 
 impl<'a> Below<'a> {
     /// The text for a run, with a diagnostic if requested.
@@ -120,11 +125,11 @@ impl<'a> Below<'a> {
             let wide = |text: &String| writer.fonts.width(text, Weight::SemiBold, scale.caption());
             let fitting = wordings.find(|text| wide(text) <= layout.words_width(scale));
             let text = |text| (text, Weight::SemiBold, scale.caption(), palette.text);
-            return Self { tally: None, texts: fitting.map(text).into_iter().collect() };
+            return Self { tally: None, texts: [fitting.map(text), None, None] };
         }
         let Snapshot { turned_over: over, flat, broken, broken_springs, diagnostics, .. } = &run.snapshot;
         if over.is_empty() {
-            return Self { tally: None, texts: Vec::new() };
+            return Self { tally: None, texts: [None, None, None] };
         }
         let states = [&over[..], &flat[..], &broken[..]];
         let (smaller, room) = size_of_tallies(scale, layout);
@@ -134,43 +139,53 @@ impl<'a> Below<'a> {
         let (count, colour) = match diagnostics.turned_over {
             _ if !broken_springs.is_empty() => (format!("{} in pieces", number::count(gone)), palette.second_text),
             _ if !broken.is_empty() => (format!("{} broken", number::count(gone)), palette.second_text),
-            0 if flattened > 0 => (format!("{flattened} flat"), palette.second_text),
             0 => (number::count(0), palette.second_text),
             count => (number::count(count), palette.alarm_text),
         };
         let number = number.and_then(|diagnostic| text(diagnostic, composer.scene, run));
         let number = number.map(|text| (text, Weight::Regular, scale.small(), palette.second_text));
-        let texts = std::iter::once((count, Weight::SemiBold, scale.caption(), colour)).chain(number).collect();
-        Self { tally: Some((tally, states, width)), texts }
+        let flat = (flattened > 0).then(|| format!("{} flat", number::count(flattened)));
+        let flat = flat.map(|text| (text, Weight::Regular, scale.small(), palette.second_text));
+        let count = (count, Weight::SemiBold, scale.caption(), colour);
+        Self { tally: Some((tally, states, width)), texts: [Some(count), flat, number] }
     }
 
-    /// The width of the tally and of a number of texts (px).
-    fn width(&self, writer: &Writer<'_>, most: usize) -> f64 {
+    /// The texts that are written.
+    fn texts(&self, [flat, number]: Written) -> impl Iterator<Item = &Text> {
+        self.texts
+            .iter()
+            .zip([true, flat, number])
+            .filter(|(_, written)| *written)
+            .filter_map(|(text, _)| text.as_ref())
+    }
+
+    /// The width of the tally and of the texts (px).
+    fn width(&self, writer: &Writer<'_>, written: Written) -> f64 {
         let gap = BESIDE * writer.scale.type_unit();
-        let texts = self.texts.iter().take(most);
+        let texts = self.texts(written);
         let texts = texts.map(|(text, weight, size, _)| gap + writer.fonts.width(text, *weight, *size)).sum::<f64>();
         self.tally.map_or(-gap, |(.., width)| width) + texts
     }
 
-    /// Whether the tally and a number of texts have room.
-    pub(super) fn has_room(&self, writer: &Writer<'_>, layout: &SheetLayout, most: usize) -> bool {
-        let is_legible = self.texts.iter().take(most).all(|&(_, _, size, _)| Scale::legible(size));
-        is_legible && self.width(writer, most) <= layout.words_width(writer.scale)
+    /// Whether the tally and the texts have room.
+    pub(super) fn has_room(&self, writer: &Writer<'_>, layout: &SheetLayout, written: Written) -> bool {
+        let is_legible = self.texts(written).all(|&(_, _, size, _)| Scale::legible(size));
+        is_legible && self.width(writer, written) <= layout.words_width(writer.scale)
     }
 
-    /// Writes the tally and a number of texts into a tile.
-    pub(super) fn write(&self, writer: &mut Writer<'_>, layout: &SheetLayout, tile: [usize; 2], most: usize) {
+    /// Writes the tally and the texts into a tile.
+    pub(super) fn write(&self, writer: &mut Writer<'_>, layout: &SheetLayout, tile: [usize; 2], written: Written) {
         let scale = writer.scale;
         let [left, top, width, height] = layout.tile(tile[0], tile[1]).map(f64::from);
         let bottom = top + height - NEAR * scale.unit;
         let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * Part::Numbers.size(scale);
-        let mut left = (left + 0.5 * (width - self.width(writer, most))).round();
+        let mut left = (left + 0.5 * (width - self.width(writer, written))).round();
         if let Some((tally, states, width)) = self.tally {
             let (smaller, room) = size_of_tallies(scale, layout);
             tally.draw(states, writer.palette, smaller, room, [left, bottom.round()], &mut writer.marks);
             left += width + BESIDE * scale.type_unit();
         }
-        for (text, weight, size, colour) in self.texts.iter().take(most) {
+        for (text, weight, size, colour) in self.texts(written) {
             writer.left(text, *weight, *size, *colour, left, baseline);
             left += writer.fonts.width(text, *weight, *size) + BESIDE * scale.type_unit();
         }

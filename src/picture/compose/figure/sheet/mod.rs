@@ -36,7 +36,7 @@ use crate::runner::moments::Moments;
 use crate::runner::{Frame, RunFrame};
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
-use below::{Below, TallyKey};
+use below::{Below, TallyKey, Written};
 use glam::DVec2;
 use headings::Headings;
 use rows::RowLabels;
@@ -56,7 +56,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     let has_key = plan.write(&mut writer, sheet, moments);
 
     let framings = cameras::framings(&scenes, sheet, moments, layout);
-    let most = write_below(&mut writer, layout, &composers, sheet, moments);
+    let written = write_below(&mut writer, layout, &composers, sheet, moments);
     if let Some((legend, [_, top, ..])) = plan.legend.zip(layout.page.get(Part::Legend)) {
         let first = &composers[0];
         let (viewport, scale) = (layout.tile(0, 0), layout.tile_scale);
@@ -66,10 +66,10 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
         let frame = Frame { index: 0, time: 0.0, runs };
         legend.draw(&mut writer, [f64::from(size[0]), top], &samples, first.bar(&frame).as_ref());
     }
-    let lost = [(!has_key, Part::Key), (plan.headings.is_cut, Part::Heading), (most.is_none(), Part::Numbers)];
+    let lost = [(!has_key, Part::Key), (plan.headings.is_cut, Part::Heading), (written.is_none(), Part::Numbers)];
     let lost: Vec<_> = lost.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, part)| part).collect();
     let mut left_out = layout::told(&layout.page, &lost);
-    if sheet.number.is_some() && most == Some(1) {
+    if sheet.number.is_some() && written == Some(false) {
         left_out.push("panels do not show `sheet.number`".to_owned());
     }
 
@@ -188,22 +188,23 @@ impl Plan {
     }
 }
 
-/// Writes tallies and numbers below the bodies. All tiles have the same parts: returns how many, `None` without room for any.
+/// Writes tallies and numbers below the bodies. All tiles have the same parts: returns whether they have the diagnostic, `None` without room for any.
 fn write_below(
     writer: &mut Writer<'_>,
     layout: &SheetLayout,
     composers: &[Composer<'_>],
     sheet: &Sheet,
     moments: &Moments,
-) -> Option<usize> {
+) -> Option<bool> {
     let below = |(at, run): ([usize; 2], _)| {
         (at, Below::new(writer, layout, &composers[sheet.columns[at[1]].scene], run, sheet.number))
     };
     let all: Vec<_> = cells(moments).map(below).collect();
-    let fits = |&most: &usize| all.iter().all(|(_, below)| below.has_room(writer, layout, most));
-    let most = [2, 1].into_iter().find(fits).filter(|_| layout.page.get(Part::Numbers).is_some())?;
-    all.iter().for_each(|(at, below)| below.write(writer, layout, *at, most));
-    Some(most)
+    let fits = |&written: &Written| all.iter().all(|(_, below)| below.has_room(writer, layout, written));
+    let wordings = [[true, true], [false, true], [true, false], [false, false]];
+    let written = wordings.into_iter().find(fits).filter(|_| layout.page.get(Part::Numbers).is_some())?;
+    all.iter().for_each(|(at, below)| below.write(writer, layout, *at, written));
+    Some(written[1])
 }
 
 /// The scenes for their tiles: without words, in the look of the figure.

@@ -7,7 +7,6 @@ use crate::picture::layout::{Part, Scale};
 use crate::picture::number;
 use crate::picture::text::Weight;
 use crate::picture::wrap::wrapped;
-use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
 
 /// The largest width of names and notes relative to the picture, for long words the second one.
@@ -64,10 +63,12 @@ impl RowLabels {
         for (row, [label, note]) in self.rows.iter().enumerate() {
             writer.lines(page, Part::Label(row), scale, label, left);
             writer.lines(page, Part::Note(row), scale, note, left);
-            let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
-            let run = sheet.scenes.first().and_then(|scene| Some(&scene.runs[run(scene)?]));
-            if let Some(([_, top, _, height], run)) = page.get(Part::Sample(row)).zip(run) {
-                writer.sample([left, top + 0.5 * height], style(&sheet.charts, run.line(palette)));
+            let found = sheet.scenes.first().and_then(|scene| {
+                let run = scene.runs.iter().position(|run| run.name == sheet.rows[row].run)?;
+                Some(style(&sheet.charts, run, scene, palette))
+            });
+            if let Some(([_, top, _, height], line)) = page.get(Part::Sample(row)).zip(found) {
+                writer.sample([left, top + 0.5 * height], line);
             }
         }
     }
