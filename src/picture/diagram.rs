@@ -5,7 +5,8 @@ use super::chart::{Chart, PlotArea};
 use super::layout::Scale;
 use super::text::{Fonts, Weight};
 use super::{Item, Picture};
-use crate::look::{Style, Theme};
+use crate::colour::Colour;
+use crate::look::{Lined, Palette, Style, Theme};
 
 /// A picture made by hand: charts and text, in the fonts of the program and on the ground of its light theme.
 ///
@@ -33,6 +34,18 @@ impl TextStyle {
     fn weight(self) -> Weight {
         if self.is_bold { Weight::SemiBold } else { Weight::Regular }
     }
+}
+
+/// The colours of families of curves on light ground: those of runs with the models of these keys, and colours that are left for other keys.
+pub fn colours(families: &[&str]) -> Vec<Colour> {
+    let palette = Palette::of(Theme::Light);
+    let lined: Vec<_> = families.iter().map(|&key| Lined { model: Some(key), chosen: None }).collect();
+    palette.places(&lined).into_iter().map(|place| palette.line(place, None).colour).collect()
+}
+
+/// The lengths of dashes and gaps (px) of the variants of a family of curves, the first of which is solid.
+pub fn dashes(variant: usize) -> &'static [f64] {
+    Palette::of(Theme::Light).dash(variant)
 }
 
 impl Diagram {

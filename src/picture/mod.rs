@@ -41,7 +41,7 @@ pub(crate) use camera::Framing;
 pub use chart::{Annotation, Axis, Chart, Layer, Name};
 pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
-pub use diagram::{Diagram, TextStyle};
+pub use diagram::{Diagram, TextStyle, colours, dashes};
 pub(crate) use layout::Rectangle;
 #[cfg(test)]
 pub(crate) use page::winding;

@@ -214,8 +214,8 @@ impl Results {
             match curves.iter_mut().find(|line| line.name == *curve) {
                 Some(line) => line.points.push(*at),
                 None => {
-                    let family = curves.len();
-                    curves.push(Line { name: curve.clone(), family, is_strong: false, points: vec![*at] });
+                    let (name, family) = (curve.clone(), curve.clone());
+                    curves.push(Line { name, family, is_strong: false, points: vec![*at] });
                 }
             }
         }

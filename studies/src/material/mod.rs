@@ -98,13 +98,7 @@ impl Model {
 
     /// A curve of a plot.
     fn curve(&self, points: impl Iterator<Item = [f64; 2]>) -> Line {
-        let family = match self.kind {
-            "shape-based" => 0,
-            "linear" | "corotational" | "neo-hookean" => 1,
-            "metric" => 2,
-            "xpbd" => 4,
-            _ => 3,
-        };
+        let family = if self.kind == "limited-springs" { "mass-spring" } else { self.kind }.to_owned();
         Line { name: self.name.to_owned(), family, is_strong: self.name == MENDED, points: points.collect() }
     }
 

@@ -103,7 +103,7 @@ impl Page {
             write(&mut diagram, line, USUAL, 0.0, [MARGIN, CAPTION_AT + LINE * at as f64]);
         }
         match &self.contents {
-            Contents::Plots(plots) => plot::draw(plots, &areas, &mut diagram),
+            Contents::Plots(plots) => plot::draw(plots, self.columns, &areas, &mut diagram),
             Contents::Maps(maps) => {
                 map::legend(&mut diagram, CAPTION_AT + LINE * self.caption.len() as f64);
                 maps.iter().zip(areas).for_each(|(map, area)| map.draw(&mut diagram, area));

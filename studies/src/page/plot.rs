@@ -10,7 +10,7 @@
 //! ```
 
 use super::{Area, Colour, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, write};
-use localshape::picture::{Annotation, Axis, Chart, Diagram, Layer, Name, TextStyle};
+use localshape::picture::{Annotation, Axis, Chart, Diagram, Layer, Name, TextStyle, colours, dashes};
 
 /// One plot. Axes of one name have one range on a page.
 pub(crate) struct Plot {
@@ -28,8 +28,8 @@ pub(crate) struct Plot {
 pub(crate) struct Line {
     /// Its name; empty for none.
     pub(crate) name: String,
-    /// The number of its family's colour.
-    pub(crate) family: usize,
+    /// Its family, which has a colour: a model by its key, or any other name. Further curves of a family have dashes.
+    pub(crate) family: String,
     /// Whether it is drawn stronger than the others.
     pub(crate) is_strong: bool,
     /// The points, to the right and upwards. Points that are not positive and finite are left out.
@@ -53,29 +53,51 @@ const STRONG_DOT: f64 = 5.0;
 const ALONE: f64 = 14.0;
 /// The gap from the end of a slope to its name (px).
 const GAP: f64 = 4.0;
-/// Colours of families of curves, and of lines of known slopes.
-const FAMILIES: [Colour; 6] = [
-    [0x00, 0x72, 0xb2],
-    [0x1e, 0xa0, 0x87],
-    [0x4d, 0x20, 0x01],
-    [0x3c, 0x43, 0x4d],
-    [0x40, 0x00, 0x54],
-    [0x24, 0x9d, 0xb1],
-];
+/// The colour of lines of known slopes.
 const SLOPES: Colour = [0x7a, 0x84, 0x91];
+/// The room beyond the data at both ends of an axis, as a share of its length, and half of the least length (decades).
+const ROOM_OF_DOTS: f64 = 0.04;
+const LEAST_DECADES: f64 = 0.55;
 /// The most numbers along the axes.
 const MOST: [usize; 2] = [7, 7];
 /// The reach of lines of known slopes, in decades to the right.
 const REACH: f64 = 0.8;
 
-/// Draws plots, each in its area.
-pub(super) fn draw(plots: &[Plot], areas: &[Area], diagram: &mut Diagram) {
-    for (plot, &area) in plots.iter().zip(areas) {
-        plot.draw(diagram, area, [0, 1].map(|axis| range(plots, axis, plot.axes[axis])));
+/// The dots of curves without a name, such as the least and the greatest value of others.
+const UNNAMED: usize = 3;
+
+/// The families of curves in plots, with their colours.
+struct Families<'a>(Vec<(&'a str, Colour)>);
+
+impl<'a> Families<'a> {
+    fn of(plots: &'a [Plot]) -> Self {
+        let mut families: Vec<&str> = Vec::new();
+        for curve in plots.iter().flat_map(|plot| &plot.curves) {
+            if !families.contains(&curve.family.as_str()) {
+                families.push(&curve.family);
+            }
+        }
+        let colours = colours(&families);
+        Self(families.into_iter().zip(colours).collect())
+    }
+
+    fn colour(&self, family: &str) -> Colour {
+        self.0.iter().find(|(known, _)| *known == family).map_or(SLOPES, |(_, colour)| *colour)
     }
 }
 
-/// The logarithms at the ends of all axes of a name: in quarters of decades to the right, whole ones upwards.
+/// Draws plots, each in its area; so many stand beside each other. Those that do, and have one axis upwards, have one range of it.
+pub(super) fn draw(plots: &[Plot], columns: usize, areas: &[Area], diagram: &mut Diagram) {
+    let families = Families::of(plots);
+    for (row, areas) in plots.chunks(columns).zip(areas.chunks(columns)) {
+        for (plot, &area) in row.iter().zip(areas) {
+            let [across, up] = plot.axes;
+            plot.draw(diagram, area, &families, [range(plots, 0, across), range(row, 1, up)]);
+        }
+    }
+}
+
+/// The logarithms at the ends of all axes of a name: the axes end with the data.
 fn range(plots: &[Plot], axis: usize, name: &str) -> [f64; 2] {
     let alike = plots.iter().filter(|plot| plot.axes[axis] == name);
     let points = alike.flat_map(|plot| plot.curves.iter().flat_map(Line::shown)).map(|point| point.map(libm::log10));
@@ -84,10 +106,9 @@ fn range(plots: &[Plot], axis: usize, name: &str) -> [f64; 2] {
     if low > high {
         return [0.0, 1.0];
     }
-    // Room for dots.
-    let (parts, beyond) = if axis == 0 { (4.0, 0.1) } else { (1.0, 0.1) };
-    let rounded = [libm::floor((low - beyond) * parts) / parts, libm::ceil((high + 0.1) * parts) / parts];
-    if rounded[0] < rounded[1] { rounded } else { [rounded[0], rounded[0] + 1.0] }
+    // Room for dots, and for a tick.
+    let beyond = (ROOM_OF_DOTS * (high - low)).max(LEAST_DECADES - 0.5 * (high - low));
+    [low - beyond, high + beyond]
 }
 
 impl Line {
@@ -115,20 +136,23 @@ impl Plot {
     }
 
     /// The plot in an area, on axes with these logarithms at their ends.
-    fn chart(&self, area: Area, ranges: [[f64; 2]; 2]) -> Chart {
+    fn chart(&self, area: Area, families: &Families<'_>, ranges: [[f64; 2]; 2]) -> Chart {
         let [x, y] = [0, 1].map(|axis| Axis::logarithmic(ranges[axis].map(libm::exp10), MOST[axis]));
         let mut chart = Chart { x, y, ..Chart::default() };
         let (mut layers, mut names) = (Vec::new(), Vec::new());
         for (_, ends) in self.slopes(ranges) {
             layers.push(Layer::Line { points: ends.into(), colour: SLOPES, width: SLOPE, dash: Vec::new() });
         }
-        for curve in &self.curves {
+        for (at, curve) in self.curves.iter().enumerate() {
             let points: Vec<_> = curve.shown().collect();
-            let colour = FAMILIES[curve.family % FAMILIES.len()];
+            let colour = families.colour(&curve.family);
+            let is_variant = |other: &&Line| other.family == curve.family && !other.name.is_empty();
+            let variant =
+                if curve.name.is_empty() { UNNAMED } else { self.curves[..at].iter().filter(is_variant).count() };
             let (width, radius) = if curve.is_strong { (STRONG, STRONG_DOT) } else { (CURVE, DOT) };
             let end = self.named(&chart, area, curve).filter(|_| !curve.name.is_empty());
             names.extend(end.map(|end| Name { text: curve.name.clone(), end, colour }));
-            layers.push(Layer::Line { points: points.clone(), colour, width, dash: Vec::new() });
+            layers.push(Layer::Line { points: points.clone(), colour, width, dash: dashes(variant).to_vec() });
             layers.push(Layer::Dots { points, colour, radius });
         }
         (chart.layers, chart.annotations) = (layers, vec![Annotation::Names { names, beyond: BEYOND }]);
@@ -147,12 +171,12 @@ impl Plot {
         curve.shown().max_by(|&one, &other| alone(one).total_cmp(&alone(other)))
     }
 
-    fn draw(&self, diagram: &mut Diagram, area: Area, ranges: [[f64; 2]; 2]) {
+    fn draw(&self, diagram: &mut Diagram, area: Area, families: &Families<'_>, ranges: [[f64; 2]; 2]) {
         let [left, top, right, bottom] = area;
         write(diagram, &self.name, NAME, 0.0, [left - NUMBERS, top - ABOVE + 20.0]);
         write(diagram, self.axes[1], SMALL, 0.0, [left - NUMBERS, top - 12.0]);
         write(diagram, self.axes[0], SMALL, 1.0, [right, bottom + 43.0]);
-        let chart = self.chart(area, ranges);
+        let chart = self.chart(area, families, ranges);
         diagram.chart(&chart, area);
         let style = TextStyle { has_halo: true, colour: SECOND_TEXT, ..SMALL };
         for (name, ends) in self.slopes(ranges) {

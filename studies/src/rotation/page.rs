@@ -17,7 +17,7 @@ impl Results {
         let solvers: Vec<(usize, &Solver)> = self.solvers.iter().enumerate().collect();
         let curve = |solver: &Solver, points: Vec<[f64; 2]>| Line {
             name: solver.name.to_owned(),
-            family: solver.family(),
+            family: solver.family().to_owned(),
             is_strong: solver.is_default(),
             points: points.into_iter().map(|[x, error]| [x, error.max(ROUND_OFF)]).collect(),
         };
@@ -72,14 +72,14 @@ impl Results {
 }
 
 impl Solver {
-    /// The number of its family: readings of the paper, Newton's methods, relaxation, global solvers, the default.
-    fn family(&self) -> usize {
+    /// Its family.
+    fn family(&self) -> &'static str {
         match self.name {
-            "symmetric" | "cayley" | "quintic" | "kugelstadt" => 1,
-            "mueller" => 2,
-            "SVD (library)" | "davenport" | "closed-form" => 3,
-            "robust" => 4,
-            _ => 0,
+            "symmetric" | "cayley" | "quintic" | "kugelstadt" => "Newton's methods",
+            "mueller" => "relaxation",
+            "SVD (library)" | "davenport" | "closed-form" => "global solvers",
+            "robust" => "the default",
+            _ => "readings of the paper",
         }
     }
 }

@@ -9,20 +9,25 @@ impl Results {
     pub(super) fn page(&self) -> Page {
         let summaries = self.summaries();
         let plot = |name: &str, ours: fn(&Summary) -> Spread, paper: fn(Printed) -> Option<f64>| {
-            let curves = ROWS.iter().enumerate().flat_map(|(family, row)| {
+            let curves = ROWS.iter().flat_map(|row| {
                 let of_row = summaries.iter().filter(|one| one.case.row.name == row.name);
                 let printed: Vec<_> = of_row.filter_map(|one| Some((one, one.case.printed()?))).collect();
                 let line = |name: String, is_strong, value: &dyn Fn(&Summary, Printed) -> Option<f64>| {
                     let point = |&(one, printed): &(&Summary, Printed)| {
                         Some([one.case.stiffness_over_mass(), value(one, printed)?])
                     };
-                    Line { name, family, is_strong, points: printed.iter().filter_map(point).collect() }
+                    Line {
+                        name,
+                        family: row.name.to_owned(),
+                        is_strong,
+                        points: printed.iter().filter_map(point).collect(),
+                    }
                 };
                 [
                     line(String::new(), false, &|one, _| Some(ours(one).least)),
                     line(String::new(), false, &|one, _| Some(ours(one).most)),
-                    line(format!("{}, paper", row.name), false, &|_, printed| paper(printed)),
                     line(row.name.to_owned(), true, &|one, _| Some(ours(one).median)),
+                    line(format!("{}, paper", row.name), false, &|_, printed| paper(printed)),
                 ]
             });
             let axes = ["k/m (1/s²)", "α (rad/s²)"];

@@ -20,7 +20,7 @@ impl Results {
                         Some([across(one), error])
                     });
                     let name = method.names().into_iter().rfind(|name| !name.is_empty()).unwrap_or_default();
-                    let (family, is_strong) = (method.family(), method == Method::DEFAULT);
+                    let (family, is_strong) = (method.family().to_owned(), method == Method::DEFAULT);
                     Line { name, family, is_strong, points: points.collect() }
                 };
                 let axes = [axis, ERROR];
@@ -47,16 +47,16 @@ impl Results {
 }
 
 impl Method {
-    /// The number of the family for its order.
-    fn family(self) -> usize {
+    /// The family of methods of its order.
+    fn family(self) -> &'static str {
         match self {
-            Self::Scene(Integrator::VelocityVerlet) | Self::Reading(_) => 1,
-            Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => 2,
-            Self::Composed(..) if self == Self::FOREST_RUTH => 2,
-            Self::Composed(..) if self == Self::BLANES_MOAN => 3,
-            Self::Composed(..) => 4,
-            Self::Scene(Integrator::DormandPrince) => 5,
-            Self::Scene(_) => 0,
+            Self::Scene(Integrator::VelocityVerlet) | Self::Reading(_) => "order 2",
+            Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => "order 4",
+            Self::Composed(..) if self == Self::FOREST_RUTH => "order 4",
+            Self::Composed(..) if self == Self::BLANES_MOAN => "order 6",
+            Self::Composed(..) => "order 8",
+            Self::Scene(Integrator::DormandPrince) => "order 5",
+            Self::Scene(_) => "order 1",
         }
     }
 }

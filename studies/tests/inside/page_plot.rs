@@ -4,7 +4,7 @@ use super::super::{Contents, Page};
 use super::*;
 
 fn plots(points: Vec<[f64; 2]>) -> Vec<Plot> {
-    let curve = |name: &str, points| Line { name: name.to_owned(), family: 0, is_strong: false, points };
+    let curve = |name: &str, points| Line { name: name.to_owned(), family: "linear".into(), is_strong: false, points };
     let plot = |points: &Vec<[f64; 2]>| Plot {
         name: "plot".to_owned(),
         axes: ["time (ns)", "error (rad)"],
@@ -19,7 +19,7 @@ const AREA: Area = [100.0, 100.0, 600.0, 500.0];
 /// The charts of these plots.
 fn charts(plots: &[Plot]) -> Vec<Chart> {
     let ranges = |plot: &Plot| [0, 1].map(|axis| range(plots, axis, plot.axes[axis]));
-    plots.iter().map(|plot| plot.chart(AREA, ranges(plot))).collect()
+    plots.iter().map(|plot| plot.chart(AREA, &Families::of(plots), ranges(plot))).collect()
 }
 
 /// The dots of a chart's curves (px).
