@@ -5,6 +5,7 @@ use crate::cli::render::place_to_draw;
 use crate::cli::support::{Place, lasting};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
+use localshape::sim::Status;
 
 /// A disc in the plane that falls on a floor, with a camera at rest.
 const PLANE: &str = r#"
@@ -172,6 +173,8 @@ models.stiff = { kind = "shape-based", stiffness = 1e6 }
     let frame = Runner::new(&scene, &[0]).frame(scene.last_frame());
     let shown = frame.runs[0].last_fit.as_ref().expect("the last state that fits");
     assert!(shown.times_wider > 1.0 && shown.snapshot.position.len() == 14, "{shown:?}");
+    let Status::Diverged(divergence) = shown.snapshot.status else { panic!("{shown:?}") };
+    assert_eq!((divergence.part, divergence.element), (0, None), "an element of another body");
 }
 
 /// After its last moment a recording shows its last state, and says so.

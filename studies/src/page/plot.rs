@@ -130,7 +130,7 @@ impl Plot {
         let line = |&slope: &f64| {
             let aside = if slope > 0.0 { x - across[0] } else { across[1] - x };
             let reach = REACH.min((y - up[0]) / slope.abs()).min(aside) * -slope.signum();
-            (format!("slope {slope}"), [*meet, [x + reach, y + slope * reach].map(libm::exp10)])
+            (format!("slope {slope}").replace('-', "−"), [*meet, [x + reach, y + slope * reach].map(libm::exp10)])
         };
         slopes.iter().map(line).collect()
     }

@@ -26,7 +26,7 @@ impl Results {
                 let axes = [axis, ERROR];
                 Plot { name: name.to_owned(), axes, curves: comparison.methods().map(line).collect(), slopes }
             };
-            let slopes = Some(([8e3, 0.5], vec![-1.0, -2.0, -4.0]));
+            let slopes = Some(([50.0, 3e-8], vec![-1.0, -2.0, -4.0]));
             [
                 plot(&comparison.name, "evaluations of the forces", |one| one.evaluations as f64, slopes),
                 plot("Time", "time (s)", |one| one.time.median, None),
