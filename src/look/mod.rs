@@ -23,12 +23,12 @@ mod view;
 
 pub use crate::colour::Colour;
 pub use camera::Camera;
-pub(crate) use camera_box::{CameraBox, CameraBoxes};
+pub(crate) use camera_box::CameraBoxes;
 pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
 pub use font::FontFiles;
 pub use palette::Theme;
-pub use plot::{Measure, Part, Plot, PlotByBody, PlotOf};
+pub use plot::{By, Measure, Plot, PlotByBody, PlotOf};
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
 pub(crate) use run_lines::{LinePlace, Lined};
@@ -37,6 +37,7 @@ pub use view::{ColourScale, EdgeStyle, FloorStyle, Ghost, Labels, Style, Traced,
 #[cfg(feature = "render")]
 pub(crate) use {
     camera::axes,
+    camera_box::CameraBox,
     drawn::LineStyle,
     palette::{BODIES, Palette},
     ramp::SHADES,

@@ -24,13 +24,13 @@ pub struct PlotByBody {
     /// The diagnostic.
     pub plot: Diagnostic,
     /// What has a curve of its own.
-    pub by: Part,
+    pub by: By,
 }
 
 /// A part of a run with a curve of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Part {
+pub enum By {
     /// Each body.
     Body,
 }

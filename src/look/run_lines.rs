@@ -18,10 +18,18 @@ pub(super) const DASHES: [&[f64]; 8] = [
     &[4.0, 8.0],
 ];
 
-/// The models with a colour of their own, by their keys, in the order of a palette's colours. Other models, recordings, and runs with
+/// The models that share a colour, by their keys, in the order of a palette's colours. Other models, recordings, and runs with
 /// several models have colours that are left.
-const MODELS: [&str; 8] =
-    ["shape-based", "mass-spring", "volume-springs", "linear", "corotational", "neo-hookean", "xpbd", "metric"];
+const MODELS: [&[&str]; 8] = [
+    &["shape-based"],
+    &["mass-spring", "limited-springs"],
+    &["volume-springs"],
+    &["linear"],
+    &["corotational"],
+    &["neo-hookean"],
+    &["xpbd"],
+    &["metric"],
+];
 
 /// What decides the line of a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,7 +58,7 @@ impl Palette {
         let free: Vec<usize> = (0..self.runs.len()).filter(is_free).collect();
         let free = if free.is_empty() { (0..self.runs.len()).collect() } else { free };
         let home = |run: &Lined<'_>| {
-            let own = MODELS.iter().position(|&model| run.model == Some(model));
+            let own = MODELS.iter().position(|keys| run.model.is_some_and(|model| keys.contains(&model)));
             own.filter(|own| run.chosen.is_none() && free.contains(own))
         };
         let homes: Vec<_> = runs.iter().map(home).collect();
@@ -96,7 +104,7 @@ mod tests {
     fn models_have_their_colours_in_every_scene_and_runs_of_one_model_their_dashes() {
         let palette = Palette::of(Theme::Light);
         let lines = |runs: &[Lined<'_>]| palette.places(runs).iter().map(|at| [at.colour, at.dash]).collect::<Vec<_>>();
-        assert_eq!(lines(&MODELS.map(of)), [0, 1, 2, 3, 4, 5, 6, 7].map(|at| [at, at]));
+        assert_eq!(lines(&MODELS.map(|keys| of(keys[0]))), [0, 1, 2, 3, 4, 5, 6, 7].map(|at| [at, at]));
         assert_eq!(lines(&["mass-spring", "linear", "mass-spring"].map(of)), [[1, 0], [3, 1], [1, 2]]);
         // Recordings, and models without a colour of their own, have what is left.
         let all = [Lined::default(), of("shape-based"), of("another"), Lined::default(), of("another")];
@@ -113,7 +121,7 @@ mod tests {
         for palette in [Theme::Light, Theme::Dark].map(Palette::of) {
             for chosen in palette.runs {
                 for at in 0..MODELS.len() {
-                    let mut runs = MODELS.map(of);
+                    let mut runs = MODELS.map(|keys| of(keys[0]));
                     runs[at].chosen = Some(chosen);
                     let places = palette.places(&runs);
                     let colours: Vec<_> = runs

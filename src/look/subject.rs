@@ -99,10 +99,10 @@ impl<'a> Subject<'a> {
         match field {
             Field::Strain => LARGE,
             Field::Displacement => {
-                // A body that is stretched gives way at both ends.
+                // From the start of a path: half of its longest way, there and back.
                 let grips = self.runs.iter().flat_map(|run| run.grips);
-                let shifts = grips.map(|grip| 0.5 * grip.motion.longest_way(0.0)).filter(|shift| shift.is_finite());
-                LARGE * most(&mut self.bodies.iter().map(|one| one.side).chain(shifts))
+                let ways = grips.map(|grip| 0.5 * grip.motion.longest_way(self.side())).filter(|way| way.is_finite());
+                LARGE * most(&mut self.bodies.iter().map(|one| one.side).chain(ways))
             }
             Field::Distance => LARGE * self.extent(),
             Field::ElasticEnergy => {

@@ -321,11 +321,13 @@ impl Writer<'_> {
         let [count, all] = [count, turned_over.len()].map(number::count);
         let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-        let with_flat = (flattened > 0).then(|| format!("{state}, {} flat", number::count(flattened)));
+        let has_flat = flattened > 0 && state == TURNED_OVER;
+        let with_flat = has_flat.then(|| format!("{state}, {} flat", number::count(flattened)));
         let of_bodies = of_bodies(state, names, tally.counts(which));
         let fits = |text: &String, room| self.fonts.width(text, Weight::Regular, caption) <= room;
         let with_flat = with_flat.filter(|text| fits(text, end - left));
-        let state = with_flat.or(of_bodies.filter(|text| fits(text, free))).unwrap_or_else(|| state.to_owned());
+        // What stands here in one frame stands here in all.
+        let state = of_bodies.filter(|text| fits(text, free)).or(with_flat).unwrap_or_else(|| state.to_owned());
         let free = free.max(end - left);
         let state = self.fonts.shortened(&state, Weight::Regular, caption, free);
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);

@@ -434,8 +434,9 @@ fn bodies_have_curves_with_names_or_none() {
     };
     let charts = |count: u32, charts: &str| {
         let bodies: String = (0..count).map(body).collect();
-        let runs: String = ["shape-based", "mass-spring"]
-            .map(|kind| format!("[[run]]\nname = '{kind}'\nmodel = {{ kind = '{kind}', stiffness = 1e3 }}\n"))
+        // Of one model, and so of one colour.
+        let runs: String = ["soft", "stiff"]
+            .map(|name| format!("[[run]]\nname = '{name}'\nmodel = {{ kind = 'shape-based', stiffness = 1e3 }}\n"))
             .concat();
         let scene = parse(&format!(
             "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.2 }}\n{bodies}{runs}\
@@ -450,7 +451,7 @@ fn bodies_have_curves_with_names_or_none() {
     let split = charts(3, "{ plot = 'kinetic', by = 'body' }");
     let mut names: Vec<_> = split.words.iter().filter(is_name).map(|word| word.text.clone()).collect();
     names.sort_unstable();
-    let expected = ["mass-spring", "shape-based"].map(|run| [0, 1, 2].map(|at| format!("{run} · body {at}")));
+    let expected = ["soft", "stiff"].map(|run| [0, 1, 2].map(|at| format!("{run} · body {at}")));
     assert_eq!(names, expected.concat());
     let looks: Vec<_> = series(&split).into_iter().map(look_of).collect();
     assert_eq!(looks.len(), 6, "{looks:?}");
@@ -460,6 +461,9 @@ fn bodies_have_curves_with_names_or_none() {
     let told = many.words.iter().find(|word| word.text.ends_with(" of 24 curves")).map(|word| word.text.clone());
     assert!((2..24).contains(&named) && told == Some(format!("{named} of 24 curves")), "{named} {told:?}");
     assert_eq!(series(&many).len(), named);
+    // Both runs are among them.
+    let of_soft = many.words.iter().filter(is_name).filter(|word| word.text.starts_with("soft")).count();
+    assert!((named / 2..=named.div_ceil(2)).contains(&of_soft), "{of_soft} of {named}");
 }
 
 /// At the usual sizes and in the usual columns one chart shows all curves, and names them.

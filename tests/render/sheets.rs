@@ -383,13 +383,13 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
 #[test]
 fn a_sheet_colours_all_its_scenes_by_one_field() {
     let columns =
-        "[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0.03\n[[sheet.column]]\nscene = 'stretch.toml'\ntime = 0.5\n";
+        "[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0.03\n[[sheet.column]]\nscene = 'stretch.toml'\ntime = 1.5\n";
     let figure = own(&format!(
         "[sheet]\ncolour = {{ by = 'displacement', map = 'viridis' }}\nrow = [{{ run = 'Local shape' }}]\n{columns}"
     ));
     let scales: Vec<_> = figure.scenes().iter().map(|scene| scene.view.colour.expect("a field")).collect();
-    // Half of the way by which one of the scenes is stretched.
-    let way = 0.5 * f64::hypot(0.5, 0.2);
+    // Half of the way of a grab that stretches and turns: its shift, and 2.5 rad at the distance of a side.
+    let way = 0.5 * (f64::hypot(0.5, 0.2) + 2.5 * 0.1);
     assert!(scales[0] == scales[1] && scales[0].range[0] == 0.0, "{scales:?}");
     assert!((scales[0].range[1] - way).abs() < 1e-12, "{scales:?}");
     let picture = compose_figure(&figure, &Moments::new(&figure)).expect("there is room");

@@ -50,7 +50,7 @@ fn charts_name_things_that_are_there() {
         "{ plot = 'energy', by = 'body' }",
         "1:16 is of each body, but no run has several write the name of the diagnostic alone",
     );
-    case("{ plot = 'enrgy', by = 'body' }", "1:25 did you mean \"energy\"?");
+    case("{ plot = 'energy1', by = 'body' }", "1:25 did you mean \"energy\"?");
     case("{ plot = 'energy', by = 'bodies' }", "1:40 expected \"body\"");
 }
 

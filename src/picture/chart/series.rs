@@ -118,17 +118,16 @@ impl Series {
         }
     }
 
-    /// A diagnostic of each body of a run of a scene, if it has several, in the colour of the run and with the dashes of the body's place.
+    /// A diagnostic of each body of a run of a scene, if it has several, in the colour of the run.
     pub(super) fn of_bodies<'a>(
         diagnostic: Diagnostic,
         of_run: &'a TimeSeries,
         (scene, run): (&'a Scene, &'a str),
         palette: &'a Palette,
     ) -> impl Iterator<Item = Self> + 'a {
-        let colour = scene.runs[of_run.run].line(palette).colour;
-        let bodies = scene.runs[of_run.run].several(scene).zip(&of_run.of_bodies).enumerate();
-        bodies.map(move |(at, ((body, _), all))| {
-            let style = LineStyle { colour, dash: palette.dash(at) };
+        let style = LineStyle { dash: &[], ..scene.runs[of_run.run].line(palette) };
+        let bodies = scene.runs[of_run.run].several(scene).zip(&of_run.of_bodies);
+        bodies.map(move |((body, _), all)| {
             let one = Self::over(diagnostic, of_run, all.iter().map(|all| diagnostic.of(all)), style);
             Self { name: format!("{run} · {body}"), is_part: true, ..one }
         })

@@ -76,13 +76,24 @@ impl Quantity {
                 let bodies: Vec<_> = Series::of_bodies(all.plot, own, (scene, &run.name), writer.palette).collect();
                 if bodies.is_empty() { vec![run] } else { bodies }
             };
-            series = of_scenes[0].1.series.iter().zip(series).flat_map(of_bodies).collect();
+            let of_runs: Vec<Vec<Series>> = of_scenes[0].1.series.iter().zip(series).map(of_bodies).collect();
+            series = by_turns(of_runs);
+            // Curves of one colour differ in dashes, whichever run they are of.
+            for at in 0..series.len() {
+                let alike = series[..at].iter().filter(|other| other.style.colour == series[at].style.colour).count();
+                series[at].style.dash = writer.palette.dash(alike);
+            }
             0
         } else {
             series.len()
         };
         let counted = diagnostic.filter(|one| matches!(one, Diagnostic::TurnedOver | Diagnostic::Broken));
-        let in_parts = counted.map(|counted| of_parts(counted, of_scenes));
+        let in_parts = counted.map(|counted| match plot {
+            // Bodies have other numbers of parts than their run.
+            Plot::ByBody(_) if counted == Diagnostic::TurnedOver => "elements".to_owned(),
+            Plot::ByBody(_) => "elements, springs".to_owned(),
+            _ => of_parts(counted, of_scenes),
+        });
         // Springs and elements have no common scale but their shares.
         let is_share = in_parts.as_deref() == Some(SHARES);
         if is_share {
@@ -176,6 +187,19 @@ impl Quantity {
         for (text, line) in notes.iter().zip(1..) {
             let baseline = baseline + f64::from(line) * SHORT * unit;
             writer.left(text, Weight::Regular, SMALL * unit, palette.second_text, left, baseline);
+        }
+    }
+}
+
+/// All entries of lists: the first of each, then the second of each, and so on.
+fn by_turns<T>(lists: Vec<Vec<T>>) -> Vec<T> {
+    let mut rest: Vec<_> = lists.into_iter().map(Vec::into_iter).collect();
+    let mut all = Vec::new();
+    loop {
+        let before = all.len();
+        all.extend(rest.iter_mut().filter_map(Iterator::next));
+        if all.len() == before {
+            return all;
         }
     }
 }
@@ -278,9 +302,10 @@ impl Stack {
         self.quantities.iter().filter(|one| one.against.is_none()).count()
     }
 
-    /// The place of the first chart over time among all, with the time series of runs.
+    /// The place of the first chart of runs over time among all, with their time series.
     pub(super) fn first(&self) -> (usize, &[Series]) {
-        self.runs().next().filter(|_| self.over_time() > 0).unwrap_or_default()
+        let of_runs = |one: &&Quantity| one.against.is_none() && one.runs > 0;
+        self.quantities.iter().find(of_runs).map(|one| (one.at, &one.series[..])).unwrap_or_default()
     }
 
     /// The places of the charts among all, in the order in which they are drawn, each with the series of runs.

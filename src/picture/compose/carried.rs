@@ -335,7 +335,7 @@ impl Surfaces<'_> {
         let state = |at: usize| turned.get(at).filter(|_| is_whole(at));
         let differ = |beside: [usize; 2]| {
             let states = beside.map(state);
-            states[0] != states[1] && !states.contains(&Some(&Turned::Partly))
+            states[0] != states[1] && states.contains(&Some(&Turned::Yes)) && !states.contains(&Some(&Turned::Partly))
         };
         let new = |at: u32| points.len() as u32 + at;
         let cut = rim.lines.iter().filter(|(at, _)| is_whole(*at)).map(|(_, ends)| ends.map(new));

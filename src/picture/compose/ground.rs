@@ -83,23 +83,22 @@ impl Draft<'_> {
     /// The extra width of the floor (sides), so that the shadow of a body that moves away or flies high still falls on it. It is the same in
     /// all frames of a camera that stands still, and of one that follows a known course.
     fn farther(&self, plane: &Plane) -> f64 {
+        let size = self.composer.extent / self.side;
+        // A smooth start.
+        let wider = |beyond: f64| beyond * beyond / (beyond + GENTLY * size);
+        if !self.framing.moves {
+            return wider(FARTHEST_SHADOW * size);
+        }
         if self.diverged || self.position.is_empty() {
             return 0.0;
         }
-        let size = self.composer.extent / self.side;
         let now = || {
             let middles = self.bodies.nodes().map(|nodes| self.centre(nodes));
             let gone = middles.map(|middle| plane.shadow((middle - self.origin) / self.side, self.key).length());
             gone.fold(0.0, f64::max)
         };
-        let gone = match self.composer.shadow_way {
-            _ if !self.framing.moves => f64::INFINITY,
-            Some(way) => way / self.side,
-            None => now(),
-        };
-        // A smooth start.
-        let beyond = (gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size);
-        beyond * beyond / (beyond + GENTLY * size)
+        let gone = self.composer.shadow_way.map_or_else(now, |way| way / self.side);
+        wider((gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size))
     }
 
     /// The plane of the ground, and a point on lines of its grid (m): the origin of the world, moved with the floor.

@@ -92,9 +92,13 @@ fn meeting(body: &Body, [from, to]: [DVec3; 2], [first, second]: [u32; 2]) -> f6
     left.midpoint(entered).clamp(0.0, 1.0)
 }
 
-/// The share of a way (m) from a point in an element at rest, which is convex, at which it leaves the element; at most 1.
+/// The share of a way (m) from a point in an element at rest, which is convex, at which it leaves the element; at most 1. A point that
+/// no single element moves is in none.
 fn exit(body: &Body, element: u32, from: DVec3, way: DVec3) -> f64 {
     let mut least = 1.0_f64;
+    if element as usize >= body.elements().len() {
+        return least;
+    }
     body.topology().for_each_face(element as usize, |nodes| {
         let corner = |at: usize| body.rest()[nodes[at % nodes.len()] as usize];
         let normal: DVec3 = (1..nodes.len()).map(|at| (corner(at) - corner(0)).cross(corner(at + 1) - corner(0))).sum();
@@ -123,5 +127,6 @@ mod tests {
         let way = [DVec3::new(0.4, 0.2, 0.5), DVec3::new(1.2, 0.6, 0.5)];
         assert!((meeting(&body, way, [0, 1]) - 0.75).abs() < 1e-12);
         assert!((meeting(&body, [way[1], way[0]], [1, 0]) - 0.25).abs() < 1e-12);
+        assert_eq!(meeting(&body, way, [u32::MAX; 2]), 0.5);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Composer;
 use super::overlay::have_colours_of_runs;
-use crate::look::{Labels, LineStyle, Palette, View};
+use crate::look::{Labels, LineStyle, Palette, Plot, View};
 use crate::picture::caption::{self, BETWEEN_PARTS, Heading, Writer};
 use crate::picture::chart::{event, style};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
@@ -115,9 +115,10 @@ impl<'a> Words<'a> {
         if !view.labels.legend || !(has_chart || has_arrows || has_curves) {
             return None;
         }
-        // Without a chart, only colours count.
+        // Without a chart of runs, only colours count.
         let line = style(&view.charts, run, self.scene, self.palette);
-        Some(if has_chart { line } else { LineStyle { dash: &[], ..line } })
+        let has_dashes = has_chart && view.charts.iter().any(|chart| !matches!(chart, Plot::ByBody(_)));
+        Some(if has_dashes { line } else { LineStyle { dash: &[], ..line } })
     }
 
     /// Whether the clock has no room beside the heading of its panel.

@@ -61,7 +61,7 @@ pub(in crate::scene) struct RunFile {
     /// The colour of the run's curves, paths, forces and line beside its name: hexadecimal such as `"#0072b2"`, or a CSS name
     /// such as `"teal"`. Its contrast with the background must be at least 3, and its difference from turned-over
     /// elements at least 20 (CIEDE2000), also with colour blindness. Several runs may share a colour: names stand
-    /// at the ends of curves. Default: the colour of its model; runs of one model differ in dashes. A recording has a colour that is left.
+    /// at the ends of curves. Default: the colour of its model; runs of one model differ in dashes. A recording, and a run with several models, have a colour that is left.
     pub(in crate::scene) colour: Option<TypedColour>,
 }
 

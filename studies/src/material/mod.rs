@@ -98,7 +98,7 @@ impl Model {
 
     /// A curve of a plot.
     fn curve(&self, points: impl Iterator<Item = [f64; 2]>) -> Line {
-        let family = if self.kind == "limited-springs" { "mass-spring" } else { self.kind }.to_owned();
+        let family = self.kind.to_owned();
         Line { name: self.name.to_owned(), family, is_strong: self.name == MENDED, points: points.collect() }
     }
 

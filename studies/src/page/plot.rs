@@ -64,7 +64,7 @@ const MOST: [usize; 2] = [7, 7];
 const REACH: f64 = 0.8;
 
 /// The dots of curves without a name, such as the least and the greatest value of others.
-const UNNAMED: usize = 3;
+const UNNAMED: usize = 7;
 
 /// The families of curves in plots, with their colours.
 struct Families<'a>(Vec<(&'a str, Colour)>);
