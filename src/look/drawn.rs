@@ -58,9 +58,9 @@ impl Palette {
         LineStyle { colour: readable(colour, self.background, LINE_CONTRAST), dash: DASHES[place.dash] }
     }
 
-    /// The dashes of the curve of a part at a place in a run.
-    pub(crate) fn dash(&self, part: usize) -> &'static [f64] {
-        DASHES[part % DASHES.len()]
+    /// The dashes (px in the reference picture) of a curve, by its number among those of its colour. The first is solid; there are eight.
+    pub(crate) fn dash(&self, number: usize) -> &'static [f64] {
+        DASHES[number % DASHES.len()]
     }
 }
 

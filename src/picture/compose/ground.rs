@@ -89,15 +89,16 @@ impl Draft<'_> {
         if !self.framing.moves {
             return wider(FARTHEST_SHADOW * size);
         }
-        if self.diverged || self.position.is_empty() {
-            return 0.0;
-        }
         let now = || {
             let middles = self.bodies.nodes().map(|nodes| self.centre(nodes));
             let gone = middles.map(|middle| plane.shadow((middle - self.origin) / self.side, self.key).length());
             gone.fold(0.0, f64::max)
         };
-        let gone = self.composer.shadow_way.map_or_else(now, |way| way / self.side);
+        let gone = match self.composer.shadow_way {
+            Some(way) => way / self.side,
+            None if self.diverged || self.position.is_empty() => return 0.0,
+            None => now(),
+        };
         wider((gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size))
     }
 
