@@ -33,23 +33,27 @@ pub(super) struct Groups {
     colours: Vec<Vec<usize>>,
     /// The groups that share elements with each, and itself.
     near: Vec<BTreeSet<usize>>,
-    /// The nodes and the first group of each body.
-    bodies: Vec<(Range<usize>, usize)>,
+    /// The nodes and the groups of each body.
+    bodies: Vec<(Range<usize>, Range<usize>)>,
+    /// The first group of the body of each.
+    first: Vec<usize>,
 }
 
 impl Groups {
     pub(super) fn new(bodies: &[(Arc<Body>, &dyn ElasticModel)]) -> Self {
         let all: usize = bodies.iter().map(|(body, _)| body.len()).sum();
         let size = NODES.max(all / GROUPS);
-        let (mut of_node, mut near, mut firsts) = (Vec::with_capacity(all), Vec::new(), Vec::new());
+        let (mut of_node, mut near, mut parts) = (Vec::with_capacity(all), Vec::new(), Vec::new());
+        let mut first_of = Vec::new();
         for (body, _) in bodies {
-            let first = of_node.len();
+            let (first, first_group) = (of_node.len(), near.len());
             of_node.resize(first + body.len(), 0);
-            firsts.push((first..of_node.len(), near.len()));
             halve(body.rest(), &mut Vec::from_iter(0..body.len()), size, &mut |nodes| {
                 nodes.iter().for_each(|node| of_node[first + node] = near.len());
                 near.push(BTreeSet::new());
             });
+            first_of.resize(near.len(), first_group);
+            parts.push((first..of_node.len(), first_group..near.len()));
             for element in body.elements().iter() {
                 let groups: BTreeSet<_> = element.iter().map(|&node| of_node[first + node as usize]).collect();
                 groups.iter().for_each(|&group| near[group].extend(&groups));
@@ -57,13 +61,22 @@ impl Groups {
         }
         let mut colours: Vec<Vec<usize>> = Vec::new();
         for group in 0..near.len() {
-            let is_apart = |other: &usize| near[group].is_disjoint(&near[*other]);
-            match colours.iter_mut().find(|colour| colour.iter().all(is_apart)) {
+            // Groups of other bodies share nothing with it.
+            let is_apart = |colour: &Vec<usize>| {
+                let of_body = colour.iter().rev().take_while(|&&other| other >= first_of[group]);
+                of_body.into_iter().all(|&other| near[group].is_disjoint(&near[other]))
+            };
+            match colours.iter_mut().find(|colour| is_apart(colour)) {
                 Some(colour) => colour.push(group),
                 None => colours.push(vec![group]),
             }
         }
-        Self { of_node, colours, near, bodies: firsts }
+        Self { of_node, colours, near, bodies: parts, first: first_of }
+    }
+
+    /// The first row of the body of a row of the stiffness.
+    fn first(&self, row: usize) -> usize {
+        MODES * self.first[row / MODES]
     }
 
     /// The evaluations of forces that [`Coarse::new`] takes.
@@ -90,7 +103,7 @@ pub(super) struct Coarse<'a> {
     groups: &'a Groups,
     /// Where nodes are from the middle of their group, as a share of the size of the largest body.
     arms: Vec<DVec3>,
-    /// The triangular factor of the stiffness, by rows.
+    /// The triangular factor of the stiffness, by rows, each from the first row of its body on: no body stiffens another.
     factor: Vec<Vec<f64>>,
     /// The square of the shortest period over 2π (s²).
     fast: f64,
@@ -107,8 +120,9 @@ impl<'a> Coarse<'a> {
         }
         let arm = |(&group, &at): (&usize, &DVec3)| (at - middles[group].0 / middles[group].1) / longest;
         let arms = groups.of_node.iter().zip(position).map(arm).collect();
-        let mut coarse =
-            Self { groups, arms, factor: vec![vec![0.0; MODES * count]; MODES * count], fast: forces.fast };
+        let rows = groups.bodies.iter().flat_map(|(_, of)| std::iter::repeat_n(MODES * of.len(), MODES * of.len()));
+        let factor = rows.map(|length| vec![0.0; length]).collect();
+        let mut coarse = Self { groups, arms, factor, fast: forces.fast };
         for colour in &groups.colours {
             for mode in 0..MODES {
                 let mut moves = vec![0.0; MODES * count];
@@ -116,7 +130,7 @@ impl<'a> Coarse<'a> {
                 let change = coarse.change(forces, position, &moves);
                 for &group in colour {
                     for row in groups.near[group].iter().flat_map(|near| MODES * near..MODES * (near + 1)) {
-                        coarse.factor[row][MODES * group + mode] = change[row] / (TINY * longest);
+                        coarse.factor[row][MODES * group + mode - groups.first(row)] = change[row] / (TINY * longest);
                     }
                 }
             }
@@ -170,21 +184,23 @@ impl<'a> Coarse<'a> {
         }
         // Springs on one group keep a body in place that nothing holds.
         let free = self.groups.bodies.iter().filter(|(nodes, _)| !forces.is_held[nodes.clone()].contains(&true));
-        for row in free.flat_map(|(_, group)| MODES * group..MODES * (group + 1)) {
-            self.factor[row][row] += fastest[row];
+        for row in free.flat_map(|(_, groups)| MODES * groups.start..MODES * (groups.start + 1)) {
+            self.factor[row][row - self.groups.first(row)] += fastest[row];
         }
         for row in 0..self.factor.len() {
-            for column in 0..row {
-                self.factor[row][column] = 0.5 * (self.factor[row][column] + self.factor[column][row]);
-            }
             let (above, rest) = self.factor.split_at_mut(row);
-            let own = &mut rest[0];
-            for column in 0..row {
+            // The rows above of the same body.
+            let (above, own) = (&above[self.groups.first(row)..], &mut rest[0]);
+            let last = above.len();
+            for column in 0..last {
+                own[column] = 0.5 * (own[column] + above[column][last]);
+            }
+            for column in 0..last {
                 let known: f64 = own[..column].iter().zip(&above[column]).map(|(a, b)| a * b).sum();
                 own[column] = (own[column] - known) / above[column][column];
             }
-            let left = own[row] - own[..row].iter().map(|known| known * known).sum::<f64>();
-            own[row] = if left > NOTHING * fastest[row] { left.sqrt() } else { f64::INFINITY };
+            let left = own[last] - own[..last].iter().map(|known| known * known).sum::<f64>();
+            own[last] = if left > NOTHING * fastest[row] { left.sqrt() } else { f64::INFINITY };
         }
     }
 
@@ -192,14 +208,16 @@ impl<'a> Coarse<'a> {
     pub(super) fn lead(&self, acceleration: &[DVec3], forces: &Forces, out: &mut Vec<DVec3>) {
         let Forces { mass, is_held, .. } = forces;
         let mut moves = self.sums(acceleration, mass);
-        for row in 0..moves.len() {
-            let known: f64 = self.factor[row][..row].iter().zip(&moves).map(|(a, b)| a * b).sum();
-            moves[row] = (moves[row] - known) / self.factor[row][row];
+        for (row, factor) in self.factor.iter().enumerate() {
+            let first = self.groups.first(row);
+            let known: f64 = factor.iter().zip(&moves[first..row]).map(|(a, b)| a * b).sum();
+            moves[row] = (moves[row] - known) / factor[row - first];
         }
-        for row in (0..moves.len()).rev() {
-            moves[row] /= self.factor[row][row];
-            let (own, (below, _)) = (moves[row], moves.split_at_mut(row));
-            below.iter_mut().zip(&self.factor[row]).for_each(|(value, factor)| *value -= factor * own);
+        for (row, factor) in self.factor.iter().enumerate().rev() {
+            let first = self.groups.first(row);
+            moves[row] /= factor[row - first];
+            let own = moves[row];
+            moves[first..row].iter_mut().zip(factor).for_each(|(value, factor)| *value -= factor * own);
         }
         out.clear();
         let way = |node: usize| acceleration[node] * self.fast + self.displacement(&moves, node);

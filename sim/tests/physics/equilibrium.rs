@@ -132,6 +132,27 @@ fn a_bar_hangs_by_the_closed_form() {
     assert!((sunk / expected - 1.0).abs() < 1e-7, "{sunk} m in place of {expected} m");
 }
 
+/// Bodies that meet nothing come to rest as each does alone, however many they are.
+#[test]
+fn many_bodies_rest_as_each_does_alone() {
+    const BODIES: u32 = 30;
+    let body = bricks([9, 1, 1], DVec3::splat(0.1));
+    let model = linear::model(&body, Material { young: 1e6, poisson: 0.3 }, 0.0).expect("bricks");
+    let end = nodes(&body, |at| at.x < 0.01);
+    let around = |bodies: u32| {
+        let count = body.len() as u32;
+        let held_nodes = (0..bodies).flat_map(|at| end.iter().map(move |node| at * count + node)).collect();
+        Surroundings { gravity: GRAVITY, grips: vec![held(held_nodes, 0.0)], ..Surroundings::default() }
+    };
+    let alone = rest(&body, &*model, &around(1), 1).expect("a state of rest");
+    let all: Vec<(_, &dyn ElasticModel)> = (0..BODIES).map(|_| (Arc::clone(&body), &*model)).collect();
+    let start = State::at_rest(body.rest().repeat(BODIES as usize));
+    let found = equilibrium(&all, &start, &around(BODIES), 1e-4, Crew::new(1)).expect("a state of rest");
+    let apart = found.position.iter().zip(alone.position.iter().cycle()).map(|(one, other)| one.distance(*other));
+    let most = apart.fold(0.0, f64::max);
+    assert!(most < 1e-9, "{most} m");
+}
+
 /// Bits do not depend on the number of threads.
 #[test]
 fn rest_has_the_same_bits_on_any_number_of_threads() {
