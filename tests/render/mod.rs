@@ -20,6 +20,7 @@ mod obstacles;
 mod pages;
 mod pictures;
 mod printed;
+mod room;
 mod sheets;
 mod shown;
 mod smooth;

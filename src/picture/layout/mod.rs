@@ -29,7 +29,7 @@ use tree::{Node, Place, Solved};
 pub(super) const SMALLEST_TYPE: f64 = 5.0;
 /// The parts of a picture that panels keep without and with a chart, and the part of a panel that its body keeps.
 const PANELS: [f64; 2] = [0.45, 0.36];
-const BODY: f64 = 0.46;
+const BODY: f64 = 0.56;
 /// The largest part of a picture for a chart.
 const CHART_SHARE: f64 = 0.3;
 /// The largest part of the height of a page for a chart with an axis of its own.
@@ -588,12 +588,12 @@ mod tests {
     #[test]
     fn the_least_important_parts_are_left_out_first() {
         let large = "Title 47–95, Clock 95–135, Row 135–438, Row 452–756, Chart 775–917, Legend 936–990, Caption 1004–1030, \
-                     Caption 1030–1056, without []; panels without [Events]";
+                     Caption 1030–1056, without []; panels without [Second, Events]";
         let low = "Title 40–80, Clock 80–114, Row 114–280, Row 290–456, Chart 472–592, Legend 608–644, Caption 656–678, \
-                   Caption 678–700, without []; panels without [Second, Events]";
+                   Caption 678–700, without []; panels without [Events, Numbers]";
         // Type that cannot be read has no room.
         let small = "Title 11–22, Clock 22–32, Row 32–105, Row 107–180, Legend 184–194, \
-                     without [Chart, Caption, Caption]; panels without [Second, Events, Numbers]";
+                     without [Chart, Caption, Caption]; panels without [Events, Second, Numbers]";
         assert_eq!([([1280, 1080], 2), ([1280, 720], 2), ([300, 200], 2)].map(said), [large, low, small]);
         let crowded = said(([1280, 720], 12));
         assert!(crowded.contains("without [Caption, "), "{crowded}");
