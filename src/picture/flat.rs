@@ -139,7 +139,7 @@ impl Flat<'_> {
         let (faint, alarm) = (f64::from(edging(self.panel.sight.element)), self.alarm_line());
         let all = [
             (LineKind::Edge, THIN, edge, EDGE_ALPHA * faint),
-            (LineKind::Bar, BAR_WIDTH.into(), edge, BAR_ALPHA.into()),
+            (LineKind::Bar, BAR_WIDTH.into(), outline, BAR_ALPHA.into()),
             (LineKind::AlarmEdge, ALARM_EDGE_WIDTH.into(), alarm, f64::from(ALARM_EDGE_ALPHA) * faint),
             (LineKind::AlarmContour, BOLD, alarm, 1.0),
             (LineKind::Contour, BOLD, outline, outline_alpha.into()),

@@ -30,8 +30,8 @@ measures! {
 }
 
 /// Elements without faces.
-pub(crate) const BAR_WIDTH: f32 = 2.2;
-pub(crate) const BAR_ALPHA: f32 = 0.85;
+pub(crate) const BAR_WIDTH: f32 = 3.4;
+pub(crate) const BAR_ALPHA: f32 = 0.95;
 /// Elements smaller than this (px) get fainter edges, or edges would cover everything.
 pub(crate) const SMALL_ELEMENT: f32 = 26.0;
 /// Between these sizes of elements (px) edges fade out, because so close together they would flicker.

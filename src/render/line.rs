@@ -426,9 +426,9 @@ impl Style {
         let own = scale * panel.sight.contour_share;
         match self {
             Self::Hidden => (HIDDEN_WIDTH * scale, edge, HIDDEN_ALPHA * strength * strength),
-            Self::HiddenBar => (BAR_WIDTH * scale, edge, HIDDEN_ALPHA),
+            Self::HiddenBar => (BAR_WIDTH * scale, outline, HIDDEN_ALPHA),
             Self::Edge => (EDGE_WIDTH * scale, edge, EDGE_ALPHA * strength),
-            Self::Bar => (BAR_WIDTH * scale, edge, BAR_ALPHA),
+            Self::Bar => (BAR_WIDTH * scale, outline, BAR_ALPHA),
             Self::ObstacleEdge => (EDGE_WIDTH * scale, edge, EDGE_ALPHA),
             Self::AlarmEdge => (ALARM_EDGE_WIDTH * own, alarm_line, strength),
             Self::AlarmStep => (STEP_WIDTH * own, alarm_line, STEP_ALPHA),
