@@ -11,8 +11,9 @@ struct PaneCorner {
     @location(2) inward: f32,
     @location(3) above: f32,
     @location(4) clip: vec3<f32>,
-    @location(5) @interpolate(flat) colour: vec4<f32>,
-    @location(6) @interpolate(flat) lined: vec4<f32>,
+    @location(5) position: vec3<f32>,
+    @location(6) @interpolate(flat) colour: vec4<f32>,
+    @location(7) @interpolate(flat) lined: vec4<f32>,
 }
 
 // The start of the fade in the circle of a wall.
@@ -29,6 +30,10 @@ const CREASE_HEIGHT = 0.8;
 const CREASE_SHADE = 0.10;
 // The opacity of a wall in front of bodies, relative to its own: it hides even less of them than a plate.
 const WALL_OVER_BODIES = 0.35;
+// The opacity of a shadow on a transparent pane, relative to its own. Its normal counts as being at one angle to the light everywhere.
+const PANE_SHADOW = 0.8;
+const PANE_COSINE = 0.7;
+
 @vertex
 fn pane_corner(
     @location(0) position: vec3<f32>,
@@ -41,7 +46,7 @@ fn pane_corner(
     panel = panel_data;
     let place = panel.clip * vec4(position, 1.0);
     let above = dot(position, panel.up) - panel.floor;
-    return PaneCorner(place, grid, from_middle, inward, above, place.xyw, colour, lined);
+    return PaneCorner(place, grid, from_middle, inward, above, place.xyw, position, colour, lined);
 }
 
 // The colour of a wall with its grid, and its opacity.
@@ -82,5 +87,8 @@ fn pane_colour(corner: PaneCorner) -> @location(0) vec4<f32> {
     let behind = textureLoad(drawn_depth, vec2<i32>(corner.place.xy), 0);
     let over_bodies = select(0.0, select(OVER_BODIES, WALL_OVER_BODIES, is_wall), behind < corner.place.z);
     let left = select(1.0, over_bodies, behind > 0.0);
-    return vec4(own.rgb, own.a * soft_border * left);
+    // A shadow is a thin dark layer.
+    let shadow = PANE_SHADOW * (1.0 - reached(corner.position, PANE_COSINE));
+    let opacity = min(own.a * (1.0 + shadow), 1.0);
+    return vec4(own.rgb * (own.a / max(opacity, 1e-6)), opacity * soft_border * left);
 }

@@ -29,11 +29,16 @@ struct Panel {
     // Colour of their hatch and edges; unit of soft distances in light.
     alarm_line: vec3<f32>,
     soft: f32,
-    // Colours of the edges of sound elements and of obstacles.
-    edge: vec4<f32>,
+    // Colour of the edges of sound elements; the width of a texel of the map of the key light, as a depth of it.
+    edge: vec3<f32>,
+    key_texel: f32,
+    // Colour of obstacles.
     obstacle: vec4<f32>,
-    // The middle of the body in the picture (px); thickness of lines relative to the reference.
-    middle: vec3<f32>,
+    // From the panel's coordinates to the box of the map of the key light.
+    key_map: mat4x4<f32>,
+    // The middle of the body in the picture (px); the layer of that map, or −1; thickness of lines relative to the reference.
+    middle: vec2<f32>,
+    key_layer: f32,
     line_scale: f32,
     // Colours of sound elements, for each body.
     bodies: array<vec4<f32>, BODIES>,

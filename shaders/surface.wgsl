@@ -2,7 +2,7 @@
 // scalar field, light is mild and keeps the colours of its scale.
 //
 // `OCCLUDERS` is the number of obstacles near a body, `TINTED` tells whether a field colours surfaces, and `EDGED` whether
-// surfaces draw the edges of their elements.
+// surfaces draw the edges of their elements. `SHADOWED` tells whether surfaces cast shadows on each other.
 
 // The colours of the scale, linear.
 @group(0) @binding(1) var<uniform> ramp: array<vec4<f32>, SHADES>;
@@ -61,10 +61,8 @@ const WRAP = 0.12;
 // Below this height above the floor (soft units) side faces get less light, down to this part of it.
 const CONTACT_HEIGHT = 0.9;
 const CONTACT_LIGHT = 0.72;
-// At a face-to-face contact, a body and an obstacle take this part of the ambient light from each other, and less of
-// the key light.
+// At a face-to-face contact, a body and an obstacle take this part of the ambient light from each other.
 const TAKEN = 0.75;
-const KEY_TAKEN = 0.8;
 // A face turned away is this much farther back, relative to the distance.
 const BACK_FACE = 1e-5;
 // From this depth (soft units) behind the visible surface on, a turned-over element is equally visible.
@@ -165,13 +163,27 @@ fn facing_normal(position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
 
 fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
     let facing = facing_normal(position, normal);
-    return light_left(position, facing, left_by_obstacles(position, facing));
+    return light_left(position, facing, left_by_obstacles(position, facing), 1.0);
 }
 
-// The light on a point with a unit normal, reduced by near objects.
-fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
+// The light on a surface that others may shade.
+fn shaded_light(position: vec3<f32>, normal: vec3<f32>) -> Light {
+    let facing = facing_normal(position, normal);
+    return light_left(position, facing, left_by_obstacles(position, facing), key_left(position, facing));
+}
+
+// The part of the key light that surfaces leave to a point with a unit normal.
+fn key_left(position: vec3<f32>, facing: vec3<f32>) -> f32 {
+    if SHADOWED {
+        return reached(position, dot(facing, panel.key));
+    }
+    return 1.0;
+}
+
+// The light on a point with a unit normal, with the parts of ambient and key light that others leave.
+fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32, key_left: f32) -> Light {
     let view = normalize(panel.eye - position);
-    let key = mix(1.0, left, KEY_TAKEN) * max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
+    let key = key_left * max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
     let upward = dot(facing, panel.up);
     let height = dot(position, panel.up) - panel.floor;
     let contact = mix(CONTACT_LIGHT, 1.0, smoothstep(0.0, CONTACT_HEIGHT * panel.soft, height));
@@ -180,7 +192,7 @@ fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
     let shine4 = shine * shine * shine * shine;
     let shine16 = shine4 * shine4 * shine4 * shine4;
     let rim = 1.0 - max(0.0, dot(facing, view));
-    let gloss = 0.05 * shine16 * shine4 * shine4 * shine4 + 0.06 * rim * rim * rim * rim;
+    let gloss = 0.05 * key_left * shine16 * shine4 * shine4 * shine4 + 0.06 * rim * rim * rim * rim;
     return Light(KEY * key + around, gloss);
 }
 
@@ -202,7 +214,7 @@ const DOT_ALPHA = 0.6;
 // The part of a pixel that the dots of a flat element cover.
 fn dots(place: vec2<f32>) -> f32 {
     let scale = panel.line_scale;
-    let from_body = (place - panel.middle.xy) / (DOTS_APART * scale);
+    let from_body = (place - panel.middle) / (DOTS_APART * scale);
     // Rows at 45°.
     let at = vec2(from_body.x + from_body.y, from_body.y - from_body.x) * 0.70710678;
     let off = length(fract(at) - 0.5) * DOTS_APART * scale;
@@ -227,7 +239,7 @@ fn edged(colour: vec3<f32>, corner: Corner, edge: vec4<f32>, width: f32) -> vec3
 }
 
 fn sound_edged(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
-    return edged(colour, corner, vec4(panel.edge.rgb, EDGE_ALPHA), EDGE_WIDTH * panel.line_scale);
+    return edged(colour, corner, vec4(panel.edge, EDGE_ALPHA), EDGE_WIDTH * panel.line_scale);
 }
 
 fn alarm_edged(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
@@ -296,7 +308,7 @@ fn over_behind(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     unpack(corner);
-    let light = light(corner.position, corner.normal);
+    let light = shaded_light(corner.position, corner.normal);
     var colour = corner.own * light.diffuse + light.gloss;
     if TINTED {
         colour = tinted(corner, light);
@@ -309,14 +321,14 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
 @fragment
 fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
     unpack(corner);
-    let light = light(corner.position, corner.normal);
+    let light = shaded_light(corner.position, corner.normal);
     let is_flat = corner.hatch > 0.5;
     let dotted = select(0.0, dots(corner.place.xy), is_flat);
     // Flat elements are grey with dots.
     let own = select(corner.own, vec3(dot(corner.own, LUMINANCE)), is_flat);
-    var colour = mix(own, panel.edge.rgb, dotted) * light.diffuse + light.gloss;
+    var colour = mix(own, panel.edge, dotted) * light.diffuse + light.gloss;
     if TINTED {
-        colour = mix(tinted(corner, light), panel.edge.rgb, dotted);
+        colour = mix(tinted(corner, light), panel.edge, dotted);
     }
     return vec4(over_behind(sound_edged(colour, corner), corner), 1.0);
 }
@@ -325,7 +337,8 @@ fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
 @fragment
 fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
     unpack(corner);
-    let light = light_left(corner.position, facing_normal(corner.position, corner.normal), 1.0 - TAKEN * corner.hatch);
+    let facing = facing_normal(corner.position, corner.normal);
+    let light = light_left(corner.position, facing, 1.0 - TAKEN * corner.hatch, key_left(corner.position, facing));
     let above = dot(corner.position, panel.up) - panel.floor;
     let rise = length(vec2(dpdx(above), dpdy(above)));
     let inside = saturate(above / max(rise, 1e-9) + 0.5);

@@ -93,7 +93,7 @@ pub struct View {
     #[serde(serialize_with = "open")]
     #[schemars(length(min = 1, max = 64))]
     pub paths: Vec<Traced>,
-    /// Whether bodies and obstacles cast shadows on the floor.
+    /// Whether bodies and obstacles cast shadows, on the floor and on each other.
     pub shadow: bool,
     /// The drawing of floors. In the plane they have no grid.
     pub floor: FloorStyle,

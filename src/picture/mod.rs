@@ -21,6 +21,7 @@ mod field;
 mod flat;
 mod framing;
 mod ghost;
+mod key_map;
 mod layout;
 mod legend;
 pub(crate) mod measures;
@@ -216,6 +217,9 @@ pub(crate) struct Sight {
     pub focal: f32,
     /// Unit vector towards the key light.
     pub key: Vec3,
+    /// From the panel's coordinates to the box in which surfaces cast shadows on each other, seen from the key light: from −1 to 1 across and
+    /// up, and from 0 to 1 towards the light. `None` if there are none.
+    pub key_map: Option<Mat4>,
     /// Whether faces have flat colours without light, seen without perspective.
     pub flat: bool,
     /// Thickness of lines, relative to the reference picture.
@@ -266,6 +270,8 @@ pub(crate) struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Its triangles, counter-clockwise from outside the set that it bounds.
     pub triangles: Vec<[u32; 3]>,
+    /// Further triangles, which turn away from the viewer and are not drawn, but cast shadows on other surfaces.
+    pub unseen: Vec<[u32; 3]>,
     /// The place of each corner on the scale of a field, from 0 to 1; −1 without a value, and −1 minus the number of its body
     /// if bodies have colours of their own. Empty if there is neither.
     pub shades: Vec<f32>,

@@ -1,7 +1,7 @@
 //! The floor with its grid and the soft shadows on it.
 
 use super::panel::{Panels, linear};
-use super::pipeline::{Recipe, bind, element, group_layout, shader, texture, uniform_entry};
+use super::pipeline::{Recipe, bind, element, group_layout, shader, texture, textures_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{CELLS, Floor, Panel, Picture, Rectangle, Shade};
 use bytemuck::{Pod, Zeroable};
@@ -45,18 +45,8 @@ pub(super) struct Grounds {
 impl Grounds {
     pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
         let module = shader(gpu, "ground", &[super::PANEL_SHADER, SHADER]);
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let shades = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        };
-        let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), entry(1, shades)];
+        let shades = textures_entry(1, wgpu::TextureSampleType::Float { filterable: false });
+        let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), shades];
         let layout = group_layout(gpu, "ground", &entries);
         let build = |fragment| {
             let recipe = Recipe {

@@ -1,13 +1,15 @@
 //! Lit bodies in space, with their floors, obstacles and lines, in this order:
 //!
-//! 1. `surface`: turned-over elements, alone, to be seen through the body, and as surfaces of the body.
-//! 2. `surface`: other elements; `ground`: the floor with its grid and its shadows, where no body is.
-//! 3. `surface`: solid obstacles, less where bodies lie behind them; their depths are kept apart from those of bodies. `pane`: transparent obstacles, less where bodies lie behind them.
-//! 4. `border` smooths pixels that lines between two colours cross, and `line` draws edges, contours, springs and nodes. Both
+//! 1. `key`: what is nearest to the key light, where surfaces can shade each other.
+//! 2. `surface`: turned-over elements, alone, to be seen through the body, and as surfaces of the body.
+//! 3. `surface`: other elements; `ground`: the floor with its grid and its shadows, where no body is.
+//! 4. `surface`: solid obstacles, less where bodies lie behind them; their depths are kept apart from those of bodies. `pane`: transparent obstacles, less where bodies lie behind them.
+//! 5. `border` smooths pixels that lines between two colours cross, and `line` draws edges, contours, springs and nodes. Both
 //!    need the depths of the picture, which are read back, and no device.
 //!
-//! Every pixel has one sample. The passes `surface`, `ground` and `pane` have one file here and one in `shaders/`.
+//! Every pixel has one sample. The passes `key`, `surface`, `ground` and `pane` have one file here and one in `shaders/`.
 
+use super::key::KeyMaps;
 use super::pane::Panes;
 use super::panel::{self, Panels};
 use super::surface::{Set, Surfaces};
@@ -24,6 +26,7 @@ pub(super) struct Lit {
     size: [u32; 2],
     layouts: Layouts,
     panels: Panels,
+    key_maps: KeyMaps,
     surfaces: Surfaces,
     grounds: ground::Grounds,
     targets: Targets,
@@ -48,6 +51,7 @@ impl Lit {
         let lit = Self {
             gpu: gpu.clone(),
             size,
+            key_maps: KeyMaps::new(gpu),
             surfaces: Surfaces::new(gpu),
             grounds: ground::Grounds::new(gpu, &panels),
             targets: Targets::new(gpu, &layouts, size),
@@ -72,7 +76,7 @@ impl Lit {
         if self.solids.is_none() && picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty()) {
             self.solids = Some(Solids::new(gpu, layouts, *size));
         }
-        self.panels.write(gpu, picture);
+        self.panels.write(gpu, picture, &mut self.key_maps);
         self.surfaces.write(gpu, &self.panels, layouts, picture);
         self.grounds.write(gpu, picture);
         let panes = Panes::are_in(picture).then(|| {
@@ -82,13 +86,14 @@ impl Lit {
         });
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.key_maps.draw(&mut commands, &self.panels, &self.surfaces, picture);
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
         let (mut ground, mut far) = (LoadOp::Clear(wgpu::Color { r, g, b, a: 0.0 }), FAR);
         let Targets { picture: drawn, depth, .. } = &self.targets;
         if let Some(Behind { colour, depth: alone, .. }) = &self.behind {
             // One drawing serves both uses: the other surfaces are drawn over it.
             let targets = [(colour, LoadOp::Clear(wgpu::Color::TRANSPARENT)), (drawn, ground)];
-            let mut pass = begin(&mut commands, &targets, Some((alone, far)));
+            let mut pass = begin(&mut commands, &targets, Some((&alone.view, far)));
             self.surfaces.draw(&mut pass, &self.panels, picture, Set::TurnedOver);
             drop(pass);
             let [from, to] = [alone, depth].map(|target| target.texture.as_image_copy());
@@ -96,7 +101,7 @@ impl Lit {
             (ground, far) = (LoadOp::Load, LoadOp::Load);
         }
         {
-            let mut pass = begin(&mut commands, &[(drawn, ground)], Some((depth, far)));
+            let mut pass = begin(&mut commands, &[(drawn, ground)], Some((&depth.view, far)));
             if let Some(behind) = &self.behind {
                 pass.set_bind_group(1, &behind.group, &[]);
             }
@@ -107,7 +112,7 @@ impl Lit {
         if let Some(solids) = &self.solids {
             let [from, to] = [depth, &solids.depth].map(|target| target.texture.as_image_copy());
             commands.copy_texture_to_texture(from, to, depth.texture.size());
-            let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], Some((&solids.depth, LoadOp::Load)));
+            let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], Some((&solids.depth.view, LoadOp::Load)));
             pass.set_bind_group(1, before, &[]);
             self.surfaces.draw(&mut pass, &self.panels, picture, Set::Obstacles);
             before = &solids.drawn;
@@ -153,13 +158,13 @@ impl Lit {
 }
 
 /// Infinitely far away.
-const FAR: LoadOp<f32> = LoadOp::Clear(0.0);
+pub(super) const FAR: LoadOp<f32> = LoadOp::Clear(0.0);
 
 /// Begins to draw into textures, with the one for depths.
-fn begin<'a>(
+pub(super) fn begin<'a>(
     commands: &'a mut wgpu::CommandEncoder,
     targets: &[(&'a Target, LoadOp<wgpu::Color>)],
-    depth: Option<(&Target, LoadOp<f32>)>,
+    depth: Option<(&wgpu::TextureView, LoadOp<f32>)>,
 ) -> wgpu::RenderPass<'a> {
     let store = wgpu::StoreOp::Store;
     let target = |&(target, load): &(&'a Target, _)| {
@@ -169,8 +174,8 @@ fn begin<'a>(
     let targets: Vec<_> = targets.iter().map(target).collect();
     commands.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &targets,
-        depth_stencil_attachment: depth.map(|(target, load)| wgpu::RenderPassDepthStencilAttachment {
-            view: &target.view,
+        depth_stencil_attachment: depth.map(|(view, load)| wgpu::RenderPassDepthStencilAttachment {
+            view,
             depth_ops: Some(wgpu::Operations { load, store }),
             stencil_ops: None,
         }),

@@ -3,6 +3,7 @@
 
 mod border;
 mod ground;
+mod key;
 mod line;
 mod lit;
 mod pane;

@@ -12,8 +12,8 @@ use std::ops::Range;
 const SHADER: &str = include_str!("../../shaders/pane.wgsl");
 
 /// The parts of the shader.
-pub(super) fn parts() -> [&'static str; 2] {
-    [super::PANEL_SHADER, SHADER]
+pub(super) fn parts() -> [&'static str; 3] {
+    [super::PANEL_SHADER, super::key::SHADER, SHADER]
 }
 
 /// A corner of a pane as the shader reads it.

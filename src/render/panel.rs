@@ -1,6 +1,7 @@
 //! The data of a panel for all passes.
 
-use super::pipeline::{bind, element, group_layout, uniform_entry};
+use super::key::{self, KeyMaps};
+use super::pipeline::{bind, element, group_layout, textures_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::look::BODIES;
 use crate::picture::measures::edging;
@@ -23,9 +24,12 @@ pub(super) struct PanelUniform {
     pub(super) contour_share: f32,
     pub(super) alarm_line: Vec3,
     pub(super) soft: f32,
-    pub(super) edge: Vec4,
+    pub(super) edge: Vec3,
+    pub(super) key_texel: f32,
     pub(super) obstacle: Vec4,
-    pub(super) middle: Vec3,
+    pub(super) key_map: Mat4,
+    pub(super) middle: Vec2,
+    pub(super) key_layer: f32,
     pub(super) line_scale: f32,
     pub(super) bodies: [Vec4; BODIES],
     pub(super) fade_distance: Vec4,
@@ -69,7 +73,7 @@ pub(super) fn has_behind(panel: &Panel) -> bool {
     panel.dotted || !panel.turned_over.triangles.is_empty()
 }
 
-fn uniform(picture: &Picture, panel: &Panel) -> PanelUniform {
+fn uniform(picture: &Picture, panel: &Panel, layer: Option<usize>) -> PanelUniform {
     let (sight, palette) = (&panel.sight, palette(picture, panel));
     PanelUniform {
         clip: sight.clip,
@@ -84,9 +88,12 @@ fn uniform(picture: &Picture, panel: &Panel) -> PanelUniform {
         contour_share: sight.contour_share,
         alarm_line: linear(palette.alarm_line),
         soft: sight.soft,
-        edge: linear(palette.edge).extend(1.0),
+        edge: linear(palette.edge),
+        key_texel: sight.key_map.map_or(0.0, key::texel),
         obstacle: linear(palette.obstacle).extend(1.0),
-        middle: Vec2::from(sight.middle).extend(0.0),
+        key_map: sight.key_map.unwrap_or_default(),
+        middle: Vec2::from(sight.middle),
+        key_layer: layer.map_or(-1.0, |layer| layer as f32),
         line_scale: sight.line_scale,
         bodies: palette.bodies.map(|colour| linear(colour).extend(1.0)),
         fade_room: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.room)),
@@ -109,36 +116,50 @@ pub(super) fn palette(picture: &Picture, panel: &Panel) -> Palette {
 /// The distance between the data of two panels in the buffer (bytes): a multiple of 256, to which devices may align it.
 const STRIDE: usize = 768;
 
-/// The data of all panels, and the scale of a field.
+/// The data of all panels, the scale of a field, and the maps of the key light.
 #[derive(Debug)]
 pub(super) struct Panels {
     buffer: GrowingBuffer,
     ramp: GrowingBuffer,
-    bind_group: wgpu::BindGroup,
+    /// All of them, and the data of panels alone, which draw the maps.
+    bind_groups: Option<[wgpu::BindGroup; 2]>,
     pub(super) layout: wgpu::BindGroupLayout,
+    pub(super) alone: wgpu::BindGroupLayout,
 }
 
 impl Panels {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let scale = uniform_entry(1, SHADES * size_of::<Vec4>(), false);
-        let layout = group_layout(gpu, "panel", &[uniform_entry(0, size_of::<PanelUniform>(), true), scale]);
+        let data = uniform_entry(0, size_of::<PanelUniform>(), true);
+        let maps = textures_entry(2, wgpu::TextureSampleType::Depth);
+        let layout = group_layout(gpu, "panel", &[data, scale, maps]);
         let uniform = wgpu::BufferUsages::UNIFORM;
         let buffer = GrowingBuffer::new(gpu, "panels", uniform, 4 * STRIDE);
         let ramp = GrowingBuffer::new(gpu, "scale", uniform, SHADES * size_of::<Vec4>());
-        Self { bind_group: bound(gpu, &layout, &buffer, &ramp), buffer, ramp, layout }
+        Self { bind_groups: None, buffer, ramp, layout, alone: group_layout(gpu, "panel alone", &[data]) }
     }
 
-    /// Uploads the data of all panels of a picture.
-    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+    /// Uploads the data of all panels of a picture, and binds the maps of the key light.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture, maps: &mut KeyMaps) {
         let mut bytes = vec![0_u8; STRIDE * picture.panels.len()];
-        for (place, panel) in bytes.chunks_exact_mut(STRIDE).zip(&picture.panels) {
-            place[..size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform(picture, panel)));
+        for (at, (place, panel)) in bytes.chunks_exact_mut(STRIDE).zip(&picture.panels).enumerate() {
+            let uniform = uniform(picture, panel, key::layer(picture, at));
+            place[..size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         let ramp: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
         self.ramp.write(gpu, &ramp);
-        if self.buffer.write(gpu, &bytes) {
-            self.bind_group = bound(gpu, &self.layout, &self.buffer, &self.ramp);
+        let is_new = maps.write(gpu, self, picture);
+        if self.buffer.write(gpu, &bytes) || is_new || self.bind_groups.is_none() {
+            self.bind_groups = Some(self.bound(gpu, maps));
         }
+    }
+
+    fn bound(&self, gpu: &Gpu, maps: &KeyMaps) -> [wgpu::BindGroup; 2] {
+        let data = || (0, element::<PanelUniform>(self.buffer.buffer()));
+        let view = (2, wgpu::BindingResource::TextureView(&maps.view));
+        let ramp = (1, self.ramp.buffer().as_entire_binding());
+        let all = bind(gpu, "panel", &self.layout, &[data(), ramp, view]);
+        [all, bind(gpu, "panel alone", &self.alone, &[data()])]
     }
 
     /// Binds a panel, and limits drawing to a part of it.
@@ -146,13 +167,17 @@ impl Panels {
         let [left, top, width, height] = panel.viewport.map(|length| length as f32);
         pass.set_viewport(left, top, width, height, 0.0, 1.0);
         pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
-        pass.set_bind_group(0, &self.bind_group, &[(at * STRIDE) as u32]);
+        self.bind_group(pass, at, 0);
     }
-}
 
-fn bound(gpu: &Gpu, layout: &wgpu::BindGroupLayout, panels: &GrowingBuffer, ramp: &GrowingBuffer) -> wgpu::BindGroup {
-    let uniform = element::<PanelUniform>(panels.buffer());
-    bind(gpu, "panel", layout, &[(0, uniform), (1, ramp.buffer().as_entire_binding())])
+    /// Binds the data of a panel alone.
+    pub(super) fn bind_alone(&self, pass: &mut wgpu::RenderPass<'_>, at: usize) {
+        self.bind_group(pass, at, 1);
+    }
+
+    fn bind_group(&self, pass: &mut wgpu::RenderPass<'_>, at: usize, which: usize) {
+        pass.set_bind_group(0, self.bind_groups.as_ref().map(|groups| &groups[which]), &[(at * STRIDE) as u32]);
+    }
 }
 
 #[cfg(test)]

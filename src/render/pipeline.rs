@@ -12,12 +12,12 @@ pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
     pub(super) shader: &'a wgpu::ShaderModule,
-    /// The entry points of its vertices and of its pixels.
+    /// The entry points of its vertices and, with targets, of its pixels.
     pub(super) entries: [&'static str; 2],
     pub(super) groups: &'a [&'a wgpu::BindGroupLayout],
     pub(super) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(super) topology: wgpu::PrimitiveTopology,
-    /// The number of targets, all in the format of the picture.
+    /// The number of targets, all in the format of the picture; without any, only depths are drawn.
     pub(super) targets: usize,
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) writes: wgpu::ColorWrites,
@@ -71,7 +71,7 @@ impl<'a> Recipe<'a> {
                 bias: wgpu::DepthBiasState::default(),
             }),
             multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
+            fragment: (self.targets > 0).then_some(wgpu::FragmentState {
                 module: self.shader,
                 entry_point: Some(self.entries[1]),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
@@ -118,14 +118,23 @@ pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool)
 
 /// A texture that is read pixel by pixel.
 pub(super) fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    texture_entry_of(binding, sample_type, wgpu::TextureViewDimension::D2)
+}
+
+/// The same for several textures of one size.
+pub(super) fn textures_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    texture_entry_of(binding, sample_type, wgpu::TextureViewDimension::D2Array)
+}
+
+fn texture_entry_of(
+    binding: u32,
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
+        ty: wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false },
         count: None,
     }
 }

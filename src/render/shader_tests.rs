@@ -22,8 +22,9 @@ fn parse(parts: &[&str]) -> naga::Module {
 fn shaders_are_valid() {
     parse(&[PANEL_SHADER, ground::SHADER]);
     for occluders in 0..=MOST_OCCLUDERS {
-        for (tinted, edged) in [(false, false), (false, true), (true, false), (true, true)] {
-            parse(&[&Variant { occluders, tinted, edged }.parts()]);
+        for bits in 0..8 {
+            let [tinted, edged, shadowed] = [1, 2, 4].map(|bit| bits & bit > 0);
+            parse(&[&Variant { occluders, tinted, edged, shadowed }.parts()]);
         }
     }
     parse(&pane::parts());
@@ -50,7 +51,7 @@ macro_rules! same_layout {
 fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
-        clip eye near key edging up floor alarm contour_share alarm_line soft edge obstacle middle line_scale bodies
+        clip eye near key edging up floor alarm contour_share alarm_line soft edge key_texel obstacle key_map middle key_layer line_scale bodies
         fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
@@ -59,7 +60,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
 
 #[test]
 fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
-    let module = parse(&[&Variant { occluders: 0, tinted: true, edged: false }.parts()]);
+    let module = parse(&[&Variant { occluders: 0, tinted: true, edged: false, shadowed: true }.parts()]);
     let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));
     let (_, ramp) = ramp.expect("the scale");
     let naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } = module.types[ramp.ty].inner

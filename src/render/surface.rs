@@ -13,10 +13,10 @@ use std::ops::Range;
 
 const SHADER: &str = include_str!("../../shaders/surface.wgsl");
 
-/// A corner as the shader reads it.
+/// A corner as the shader reads it, its position first.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-struct Corner {
+pub(super) struct Corner {
     position: [f32; 3],
     normal: [f32; 3],
     hatch: f32,
@@ -39,6 +39,8 @@ pub(super) struct Variant {
     pub(super) tinted: bool,
     /// Whether surfaces draw the edges of their elements.
     pub(super) edged: bool,
+    /// Whether surfaces cast shadows on each other.
+    pub(super) shadowed: bool,
 }
 
 impl Variant {
@@ -49,14 +51,17 @@ impl Variant {
             occluders: occluders.min(MOST_OCCLUDERS),
             tinted: !picture.ramp.is_empty(),
             edged: panels().any(|panel| !panel.sound.edges.is_empty() || !panel.turned_over.edges.is_empty()),
+            shadowed: panels().any(|panel| panel.sight.key_map.is_some()),
         }
     }
 
     /// The parts of the shader.
     pub(super) fn parts(self) -> String {
-        let Self { occluders, tinted, edged } = self;
-        let constants = format!("const OCCLUDERS = {occluders}u;\nconst TINTED = {tinted};\nconst EDGED = {edged};\n");
-        [&constants, super::PANEL_SHADER, SHADER].concat()
+        let Self { occluders, tinted, edged, shadowed } = self;
+        let constants = format!(
+            "const OCCLUDERS = {occluders}u;\nconst TINTED = {tinted};\nconst EDGED = {edged};\nconst SHADOWED = {shadowed};\n"
+        );
+        [&constants, super::PANEL_SHADER, super::key::SHADER, SHADER].concat()
     }
 }
 
@@ -87,7 +92,7 @@ impl Surfaces {
     pub(super) fn new(gpu: &Gpu) -> Self {
         Self {
             pipelines: HashMap::new(),
-            variant: Variant { occluders: 0, tinted: false, edged: false },
+            variant: Variant { occluders: 0, tinted: false, edged: false, shadowed: false },
             corners: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1 << 16),
             indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 1 << 14),
             ranges: Vec::new(),
@@ -99,6 +104,7 @@ impl Surfaces {
         let (mut corners, mut indices) = (Vec::new(), Vec::new());
         let mut add = |label: &'static str, meshes: &mut dyn Iterator<Item = &Mesh>| {
             let start = indices.len() as u32;
+            let mut unseen = Vec::new();
             for mesh in meshes {
                 let base = corners.len() as u32;
                 corners.extend(mesh.vertices.iter().enumerate().map(|(at, vertex)| Corner {
@@ -109,8 +115,11 @@ impl Surfaces {
                     edge: mesh.edges.get(at).copied().unwrap_or([128; 4]),
                 }));
                 indices.extend(mesh.triangles.iter().flatten().map(|at| base + at));
+                unseen.extend(mesh.unseen.iter().flatten().map(|at| base + at));
             }
-            (label, start..indices.len() as u32)
+            let end = indices.len() as u32;
+            indices.append(&mut unseen);
+            (label, start..end)
         };
         let ranges = picture.panels.iter().map(|panel| {
             let sound = if has_behind(panel) { "sound, before others" } else { "sound" };
@@ -146,6 +155,14 @@ impl Surfaces {
                 pass.draw_indexed(range.clone(), 0, 0..1);
             }
         }
+    }
+
+    /// Draws all surfaces of a panel, which must be bound, with their unseen triangles: these lie between the sets.
+    pub(super) fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>, at: usize) {
+        pass.set_vertex_buffer(0, self.corners.buffer().slice(..));
+        pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
+        let [(_, first), .., (_, last)] = &self.ranges[at];
+        pass.draw_indexed(first.start..last.end, 0, 0..1);
     }
 }
 

@@ -21,6 +21,7 @@ mod pages;
 mod pictures;
 mod printed;
 mod room;
+mod shades;
 mod sheets;
 mod shown;
 mod smooth;

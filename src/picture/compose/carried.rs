@@ -308,6 +308,10 @@ impl Surfaces<'_> {
             let corners = shown.map(|(_, triangle)| *triangle).chain(cut);
             sound.triangles.extend(corners.map(|triangle| triangle.map(|corner| base as u32 + corner)));
         }
+        if is_shut {
+            let unseen = fine.triangles.iter().zip(&seen).filter(|(_, seen)| !**seen).map(|(triangle, _)| triangle);
+            sound.unseen.extend(unseen.map(|triangle| triangle.map(|corner| base as u32 + corner)));
+        }
         let is_over = |&(at, _): &(usize, &[u32; 3])| is_whole(at) && turned.get(at) == Some(&Turned::Yes);
         if !turned.is_empty() {
             let over = fine.triangles.iter().enumerate().filter(is_over).map(|(_, triangle)| *triangle);
