@@ -1,24 +1,18 @@
 //! The maps of what is nearest to the key light, one for each panel: so bodies and obstacles cast shadows on each other.
 
-use super::panel::Panels;
+use super::panel::{MAP_SIDE, Panels, map_layer};
 use super::pipeline::{DEPTH_FORMAT, Recipe, for_vertices, shader, texture};
 use super::surface::{Corner, Surfaces};
+use super::target::{FAR, begin};
 use crate::gpu::Gpu;
-use crate::picture::{Panel, Picture};
-use glam::Mat4;
+use crate::picture::Picture;
 use wgpu::TextureUsages as Usage;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/key.wgsl");
 
-/// The width and height of a map (texels).
-const SIDE: u32 = 256;
-/// The most maps: a device need not have more layers in a texture. Surfaces of further panels do not shade each other.
-const MOST: usize = 256;
-
 /// The maps of one picture.
 #[derive(Debug)]
 pub(super) struct KeyMaps {
-    maps: wgpu::Texture,
     /// All maps, to be read, and each, to be drawn.
     pub(super) view: wgpu::TextureView,
     each: Vec<wgpu::TextureView>,
@@ -29,12 +23,12 @@ pub(super) struct KeyMaps {
 impl KeyMaps {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let maps = made(gpu, [1, 1, 1]);
-        Self { view: view(&maps), maps, each: Vec::new(), pipeline: None }
+        Self { view: view(&maps), each: Vec::new(), pipeline: None }
     }
 
     /// Prepares the maps that a picture needs. Returns whether they are other textures than before.
     pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) -> bool {
-        let layers = (0..picture.panels.len()).filter_map(|at| layer(picture, at)).count();
+        let layers = (0..picture.panels.len()).filter_map(|at| map_layer(picture, at)).count();
         if layers == 0 {
             return false;
         }
@@ -47,9 +41,9 @@ impl KeyMaps {
         });
         let is_new = self.each.len() < layers;
         if is_new {
-            self.maps = made(gpu, [SIDE, SIDE, layers as u32]);
-            self.view = view(&self.maps);
-            self.each = (0..layers as u32).map(|at| layer_view(&self.maps, at)).collect();
+            let maps = made(gpu, [MAP_SIDE, MAP_SIDE, layers as u32]);
+            self.view = view(&maps);
+            self.each = (0..layers as u32).map(|at| layer_view(&maps, at)).collect();
         }
         is_new
     }
@@ -63,27 +57,14 @@ impl KeyMaps {
         picture: &Picture,
     ) {
         let Some(pipeline) = &self.pipeline else { return };
-        let layers = (0..picture.panels.len()).filter_map(|at| layer(picture, at).map(|layer| (at, layer)));
+        let layers = (0..picture.panels.len()).filter_map(|at| map_layer(picture, at).map(|layer| (at, layer)));
         for (at, layer) in layers {
-            let mut pass = super::lit::begin(commands, &[], Some((&self.each[layer], super::lit::FAR)));
+            let mut pass = begin(commands, &[], Some((&self.each[layer], FAR)));
             pass.set_pipeline(pipeline);
             panels.bind_alone(&mut pass, at);
             surfaces.draw_all(&mut pass, at);
         }
     }
-}
-
-/// The layer of the map of a panel, if it has one.
-pub(super) fn layer(picture: &Picture, at: usize) -> Option<usize> {
-    let has_map = |panel: &Panel| panel.sight.key_map.is_some();
-    let layer = picture.panels[..at].iter().filter(|panel| has_map(panel)).count();
-    (has_map(&picture.panels[at]) && layer < MOST).then_some(layer)
-}
-
-/// The width of a texel, as a depth of the map.
-pub(super) fn texel(map: Mat4) -> f32 {
-    let length = |row: usize| map.row(row).truncate().length();
-    2.0 / SIDE as f32 * length(2) / length(0)
 }
 
 fn made(gpu: &Gpu, size: [u32; 3]) -> wgpu::Texture {

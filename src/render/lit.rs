@@ -13,7 +13,7 @@ use super::key::KeyMaps;
 use super::pane::Panes;
 use super::panel::{self, Panels};
 use super::surface::{Set, Surfaces};
-use super::target::{Behind, Layouts, Solids, Target, Targets};
+use super::target::{Behind, FAR, Layouts, Solids, Targets, begin};
 use super::{RenderError, border, ground, line};
 use crate::gpu::{Gpu, Pending, ReadBack};
 use crate::picture::{Item, Picture};
@@ -76,7 +76,8 @@ impl Lit {
         if self.solids.is_none() && picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty()) {
             self.solids = Some(Solids::new(gpu, layouts, *size));
         }
-        self.panels.write(gpu, picture, &mut self.key_maps);
+        let are_new = self.key_maps.write(gpu, &self.panels, picture);
+        self.panels.write(gpu, picture, &self.key_maps.view, are_new);
         self.surfaces.write(gpu, &self.panels, layouts, picture);
         self.grounds.write(gpu, picture);
         let panes = Panes::are_in(picture).then(|| {
@@ -155,30 +156,4 @@ impl Lit {
             items
         })?)
     }
-}
-
-/// Infinitely far away.
-pub(super) const FAR: LoadOp<f32> = LoadOp::Clear(0.0);
-
-/// Begins to draw into textures, with the one for depths.
-pub(super) fn begin<'a>(
-    commands: &'a mut wgpu::CommandEncoder,
-    targets: &[(&'a Target, LoadOp<wgpu::Color>)],
-    depth: Option<(&wgpu::TextureView, LoadOp<f32>)>,
-) -> wgpu::RenderPass<'a> {
-    let store = wgpu::StoreOp::Store;
-    let target = |&(target, load): &(&'a Target, _)| {
-        let ops = wgpu::Operations { load, store };
-        Some(wgpu::RenderPassColorAttachment { view: &target.view, depth_slice: None, resolve_target: None, ops })
-    };
-    let targets: Vec<_> = targets.iter().map(target).collect();
-    commands.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &targets,
-        depth_stencil_attachment: depth.map(|(view, load)| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(wgpu::Operations { load, store }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    })
 }

@@ -1,6 +1,5 @@
 //! The data of a panel for all passes.
 
-use super::key::{self, KeyMaps};
 use super::pipeline::{bind, element, group_layout, textures_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::look::BODIES;
@@ -89,7 +88,7 @@ fn uniform(picture: &Picture, panel: &Panel, layer: Option<usize>) -> PanelUnifo
         alarm_line: linear(palette.alarm_line),
         soft: sight.soft,
         edge: linear(palette.edge),
-        key_texel: sight.key_map.map_or(0.0, key::texel),
+        key_texel: sight.key_map.map_or(0.0, texel),
         obstacle: linear(palette.obstacle).extend(1.0),
         key_map: sight.key_map.unwrap_or_default(),
         middle: Vec2::from(sight.middle),
@@ -111,6 +110,24 @@ pub(super) fn palette(picture: &Picture, panel: &Panel) -> Palette {
     // On the dark end of a scale, vermilion is more visible.
     let alarm_line = if picture.ramp.is_empty() { palette.alarm_line } else { palette.alarm };
     Palette { alarm_line, ..palette }
+}
+
+/// The width and height of a map of the key light (texels).
+pub(super) const MAP_SIDE: u32 = 256;
+/// The most maps: a device need not have more layers in a texture. Surfaces of further panels do not shade each other.
+const MOST_MAPS: usize = 256;
+
+/// The layer of the map of a panel, if it has one.
+pub(super) fn map_layer(picture: &Picture, at: usize) -> Option<usize> {
+    let has_map = |panel: &Panel| panel.sight.key_map.is_some();
+    let layer = picture.panels[..at].iter().filter(|panel| has_map(panel)).count();
+    (has_map(&picture.panels[at]) && layer < MOST_MAPS).then_some(layer)
+}
+
+/// The width of a texel, as a depth of the map.
+fn texel(map: Mat4) -> f32 {
+    let length = |row: usize| map.row(row).truncate().length();
+    2.0 / MAP_SIDE as f32 * length(2) / length(0)
 }
 
 /// The distance between the data of two panels in the buffer (bytes): a multiple of 256, to which devices may align it.
@@ -139,24 +156,23 @@ impl Panels {
         Self { bind_groups: None, buffer, ramp, layout, alone: group_layout(gpu, "panel alone", &[data]) }
     }
 
-    /// Uploads the data of all panels of a picture, and binds the maps of the key light.
-    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture, maps: &mut KeyMaps) {
+    /// Uploads the data of all panels of a picture, and binds the maps of the key light, if they are new.
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture, maps: &wgpu::TextureView, are_new: bool) {
         let mut bytes = vec![0_u8; STRIDE * picture.panels.len()];
         for (at, (place, panel)) in bytes.chunks_exact_mut(STRIDE).zip(&picture.panels).enumerate() {
-            let uniform = uniform(picture, panel, key::layer(picture, at));
+            let uniform = uniform(picture, panel, map_layer(picture, at));
             place[..size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         let ramp: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
         self.ramp.write(gpu, &ramp);
-        let is_new = maps.write(gpu, self, picture);
-        if self.buffer.write(gpu, &bytes) || is_new || self.bind_groups.is_none() {
+        if self.buffer.write(gpu, &bytes) || are_new || self.bind_groups.is_none() {
             self.bind_groups = Some(self.bound(gpu, maps));
         }
     }
 
-    fn bound(&self, gpu: &Gpu, maps: &KeyMaps) -> [wgpu::BindGroup; 2] {
+    fn bound(&self, gpu: &Gpu, maps: &wgpu::TextureView) -> [wgpu::BindGroup; 2] {
         let data = || (0, element::<PanelUniform>(self.buffer.buffer()));
-        let view = (2, wgpu::BindingResource::TextureView(&maps.view));
+        let view = (2, wgpu::BindingResource::TextureView(maps));
         let ramp = (1, self.ramp.buffer().as_entire_binding());
         let all = bind(gpu, "panel", &self.layout, &[data(), ramp, view]);
         [all, bind(gpu, "panel alone", &self.alone, &[data()])]

@@ -2,7 +2,7 @@
 
 use super::pipeline::{DEPTH_FORMAT, PICTURE_FORMAT, bind, group_layout, texture, texture_entry};
 use crate::gpu::Gpu;
-use wgpu::{TextureSampleType as Sample, TextureUsages as Usage};
+use wgpu::{LoadOp, TextureSampleType as Sample, TextureUsages as Usage};
 
 /// A texture and the view of the whole of it.
 #[derive(Debug)]
@@ -86,4 +86,30 @@ impl Behind {
         let [first, second] = [&depth.view, &colour.view].map(wgpu::BindingResource::TextureView);
         Self { group: bind(gpu, "turned over", &layouts.behind, &[(0, first), (1, second)]), colour, depth }
     }
+}
+
+/// Infinitely far away.
+pub(super) const FAR: LoadOp<f32> = LoadOp::Clear(0.0);
+
+/// Begins to draw into textures, with the one for depths.
+pub(super) fn begin<'a>(
+    commands: &'a mut wgpu::CommandEncoder,
+    targets: &[(&'a Target, LoadOp<wgpu::Color>)],
+    depth: Option<(&wgpu::TextureView, LoadOp<f32>)>,
+) -> wgpu::RenderPass<'a> {
+    let store = wgpu::StoreOp::Store;
+    let target = |&(target, load): &(&'a Target, _)| {
+        let ops = wgpu::Operations { load, store };
+        Some(wgpu::RenderPassColorAttachment { view: &target.view, depth_slice: None, resolve_target: None, ops })
+    };
+    let targets: Vec<_> = targets.iter().map(target).collect();
+    commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &targets,
+        depth_stencil_attachment: depth.map(|(view, load)| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations { load, store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
 }
