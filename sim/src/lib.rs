@@ -45,12 +45,14 @@ pub mod integrate;
 mod kernel;
 mod lanes;
 mod law;
+mod limit;
 mod lists;
 mod load;
 mod material;
 mod mode;
 pub mod model;
 mod motion;
+mod new_body;
 #[cfg(test)]
 mod noise;
 mod part;
@@ -70,7 +72,7 @@ mod work;
 mod world;
 
 pub use assembly::Assembly;
-pub use body::{Body, BodyError, NewBody};
+pub use body::Body;
 pub use carried::{Carried, Weights};
 pub use contact::{
     BodyContact, Contact, ContactPoint, Contacts, FrictionOf, Obstacle, Overlap, PairContact, Placed, Reaction, Shape,
@@ -81,18 +83,19 @@ pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};
 pub use element::{Dimension, ElementKind, Solids, around};
 pub use field::{Field, Support};
 pub use grip::Grip;
-pub use integrate::{Integrator, Unsolved};
+pub use integrate::Integrator;
 pub use kernel::peak;
 pub use lanes::vectors;
 pub use lists::IndexLists;
 pub use load::{Course, Load, Loading, Pull, Turning, for_each_area};
 pub use material::Material;
 pub use motion::{Ease, Key, Motion, Offset, Path, Pose};
+pub use new_body::{BodyError, NewBody};
 pub use placement::Placement;
 pub use recording::Recording;
 pub use rest::{Equilibrium, NoEquilibrium, equilibrium};
 pub use snapshot::Snapshot;
-pub use state::{Divergence, Memory, Nodes, State, Status};
+pub use state::{Divergence, Memory, Nodes, State, Status, Unsolved};
 pub use surroundings::{Surroundings, WrongSurroundings};
 pub use topology::{Elements, Faces, Springs};
 pub use world::{Kernel, Moment, Stepping, World};

@@ -2,7 +2,8 @@
 
 use super::body::Body;
 use super::crew::Crew;
-use super::dynamics::{Dynamics, SpeedLimit};
+use super::dynamics::Dynamics;
+use super::limit::SpeedLimit;
 use super::model::{ElasticModel, ForceModel, Properties, Report, Scratch, Share};
 use super::part::Part;
 use super::state::{Divergence, Nodes, Runaway, State, Status};

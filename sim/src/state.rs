@@ -44,6 +44,37 @@ pub struct Runaway {
     pub node: usize,
 }
 
+/// Steps whose equation an implicit method has not solved to round-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
+pub struct Unsolved {
+    /// Their number.
+    pub steps: u64,
+    /// The largest residual of a node (m/s).
+    pub residual: f64,
+    /// The end of the first of them (s).
+    pub first: f64,
+}
+
+impl Unsolved {
+    /// With one more step that ends at a time (s).
+    pub(crate) fn after(known: Option<Self>, time: f64, residual: f64) -> Self {
+        let Self { steps, residual: largest, first } = known.unwrap_or(Self { steps: 0, residual, first: time });
+        Self { steps: steps + 1, residual: largest.max(residual), first }
+    }
+
+    /// As the memory of an integrator.
+    pub(crate) fn numbers(&self) -> [f64; 3] {
+        [self.steps as f64, self.residual, self.first]
+    }
+
+    /// From such a memory.
+    pub(crate) fn remembered(memory: &[f64]) -> Option<Self> {
+        let &[steps, residual, first] = memory else { return None };
+        Some(Self { steps: steps as u64, residual, first })
+    }
+}
+
 /// Whether a run has diverged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]

@@ -2,8 +2,8 @@
 
 use super::contact::{End, Felt, Impulses, Obstacle, Shape, Source, Stage, Timing};
 use super::crew::Crew;
-use super::dynamics::SpeedLimit;
 use super::grip::Grip;
+use super::limit::SpeedLimit;
 use super::model::Scratch;
 use super::motion::Interval;
 use super::part::Part;

@@ -1,8 +1,8 @@
 //! The closest points of many candidates of contact at once, in lanes.
 
-use super::closest::{self, INSIDE, Nearest, On};
-use super::features::Placed;
-use super::lanewise::{self, Vector};
+use super::closest::{self, Nearest, On};
+use super::lanewise::{self, INSIDE, Vector};
+use super::surface::Placed;
 use crate::lanes::{Lanes, MOST, Work};
 use glam::DVec3;
 
@@ -116,18 +116,13 @@ mod tests {
     use super::*;
     use crate::body::Body;
     use crate::lanes::Set;
+    use crate::noise::Noise;
 
     /// Two cubes with points at places that look random, of which some are the same.
     fn places(surface: &Surface) -> [Vec<DVec3>; 2] {
-        let mut seed = 3u64;
-        [(); 2].map(|()| {
-            let mut next = || {
-                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                // Few numbers, so that parallel edges, flat triangles and ties are among them.
-                (seed >> 61) as f64 * 0.25
-            };
-            (0..surface.points.len()).map(|_| DVec3::new(next(), next(), next())).collect()
-        })
+        let mut noise = Noise(3);
+        // Few numbers, so that parallel edges, flat triangles and ties are among them.
+        [(); 2].map(|()| (0..surface.points.len()).map(|_| (noise.vector() * 4.0).floor() * 0.25).collect())
     }
 
     /// Each lane of each set has the bits of the same pair alone.

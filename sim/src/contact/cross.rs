@@ -2,7 +2,7 @@
 
 use super::closest;
 use super::extent::{Extent, near, sweep};
-use super::features::Placed;
+use super::surface::Placed;
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 

@@ -2,7 +2,7 @@
 
 use super::batch::{Found, PointsAndFacets, TwoEdges};
 use super::closest::{self, On};
-use super::surface::Surface;
+use super::surface::Placed;
 use crate::lanes::Set;
 use glam::DVec3;
 
@@ -16,29 +16,6 @@ pub(super) enum Kind {
     },
     /// An edge of the first surface and one of the second.
     Edges,
-}
-
-/// A surface with the places of its points (m).
-#[derive(Clone, Copy)]
-pub(super) struct Placed<'a> {
-    pub(super) surface: &'a Surface,
-    pub(super) at: &'a [DVec3],
-}
-
-impl Placed<'_> {
-    /// The corners of a facet that count.
-    pub(super) fn used(&self, facet: u32) -> &[u32] {
-        self.surface.facets[facet as usize].used()
-    }
-
-    /// The radius of a round obstacle (m); zero of other surfaces.
-    pub(super) fn radius(&self) -> f64 {
-        if self.surface.is_round { self.surface.thickness } else { 0.0 }
-    }
-
-    pub(super) fn point(&self, point: u32) -> DVec3 {
-        self.at[point as usize]
-    }
 }
 
 /// Two closest points.

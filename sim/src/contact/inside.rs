@@ -1,7 +1,7 @@
 //! Points inside closed surfaces, by how often facets wind around them, with exact signs.
 
 use super::extent::{Extent, near, sweep};
-use super::features::Placed;
+use super::surface::Placed;
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 

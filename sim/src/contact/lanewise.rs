@@ -2,8 +2,10 @@
 //!
 //! C. Ericson, Real-Time Collision Detection (2005), sections 5.1.5 and 5.1.9, without branches.
 
-use super::closest::INSIDE;
 use crate::lanes::{Lanes, each};
+
+/// The number of the inside of a triangle or segment among its parts.
+pub(super) const INSIDE: f64 = 6.0;
 
 /// A vector in each lane.
 pub(super) type Vector<L> = [L; 3];

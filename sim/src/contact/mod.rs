@@ -14,6 +14,7 @@ mod features;
 mod ground;
 mod impulses;
 mod inside;
+mod known;
 mod lanewise;
 mod near;
 mod obstacle;

@@ -1,42 +1,14 @@
 //! Which surfaces may meet: those that are near each other, and for how many steps none are.
 
 use super::extent::Extent;
+use super::known::Known;
 use super::pair::Pair;
 use super::rule::Law;
 use super::stage::Stage;
-use super::step::Known;
 use crate::motion::Interval;
 use crate::state::Nodes;
 use glam::DVec3;
 use std::sync::PoisonError;
-
-/// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Way {
-    pub(super) drift: DVec3,
-    pub(super) spread: f64,
-}
-
-impl Way {
-    /// That of points from places to others.
-    pub(super) fn of(from: &[DVec3], to: &[DVec3]) -> Self {
-        let by = from.iter().zip(to).map(|(&from, &to)| to - from);
-        // Any vector will do: the nearer it is to the mean, the less is left.
-        let some = by.clone().step_by(from.len().div_ceil(8).max(1));
-        let count = some.len().max(1) as f64;
-        let drift = some.sum::<DVec3>() / count;
-        let far = by.map(|by| by.distance_squared(drift)).fold(0.0, |most, far| if far > most { far } else { most });
-        Self { drift, spread: far.sqrt() }
-    }
-
-    pub(super) fn relative(self, other: Self) -> f64 {
-        (self.drift - other.drift).length() + self.spread + other.spread
-    }
-
-    pub(super) fn length(self) -> f64 {
-        self.drift.length() + self.spread
-    }
-}
 
 impl Stage {
     /// Chooses the pairs of surfaces that are near each other, and returns the way (m) of any two until others may meet.

@@ -2,10 +2,9 @@
 
 use super::cross::{Corners, near_facets};
 use super::extent::Extent;
-use super::features::Placed;
 use super::inside::inside;
 use super::shape::ROUND_OFF;
-use super::surface::Surface;
+use super::surface::{Placed, Surface};
 use super::{Contacts, Obstacle, Side};
 use crate::body::Body;
 use glam::DVec3;

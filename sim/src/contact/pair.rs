@@ -2,11 +2,11 @@
 
 use super::batch::Found;
 use super::extent::{Extent, near, sweep};
-use super::features::{Kind, Placed};
+use super::features::Kind;
 use super::rule::Law;
 use super::shown::{Seen, Shown};
 use super::sleepers::Sleepers;
-use super::surface::Surface;
+use super::surface::{Placed, Surface};
 use super::touches::{Sides, Touches};
 
 /// Two surfaces that may meet, or one with itself.

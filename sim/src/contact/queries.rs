@@ -2,20 +2,12 @@
 
 use super::closest::{of_segments, of_triangle};
 use super::rule::{Law, Motion, Moved, Term, Timing, Touch};
+use crate::noise::Noise;
 use glam::DVec3;
 
-/// Numbers from −1 to 1 that look random.
-struct Noise(u64);
-
-impl Noise {
-    fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn points(&mut self) -> [DVec3; 4] {
-        [(); 4].map(|()| DVec3::from_array([(); 3].map(|()| self.number())))
-    }
+/// Four points that look random.
+fn points(noise: &mut Noise) -> [DVec3; 4] {
+    [(); 4].map(|()| noise.vector())
 }
 
 /// Four points, and which features they are.
@@ -125,7 +117,7 @@ fn distances_are_those_of_another_formula() {
     for features in [Features::VertexFace, Features::EdgeEdge] {
         let mut noise = Noise(50);
         for _ in 0..20_000 {
-            let at = noise.points();
+            let at = points(&mut noise);
             let [found, other] = [features.way(at).length(), features.distance(at)];
             assert!((found - other).abs() < 1e-14 + 1e-14 * other, "{found} {other} {at:?}");
         }
@@ -138,7 +130,7 @@ fn an_approach_along_the_line_is_stopped() {
     for features in [Features::VertexFace, Features::EdgeEdge] {
         let mut noise = Noise(51);
         for far in [0.5, 1.5, 20.0, 1e3].repeat(25) {
-            let from = noise.points();
+            let from = points(&mut noise);
             let way = features.way(from);
             let first = match features {
                 Features::VertexFace => 1,

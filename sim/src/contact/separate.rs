@@ -2,8 +2,8 @@
 
 use super::Side;
 use super::cross::{Corners, near_facets};
-use super::features::Placed;
 use super::overlap::{Moment, Surfaces, is_nearer};
+use super::surface::Placed;
 use glam::DVec3;
 
 /// The most directions in which a way is sought for a body.

@@ -1,10 +1,36 @@
 //! Surfaces at the start of a step: the places of their points, and which of their edges are flat.
 
-use super::features::Placed;
-use super::near::Way;
 use super::sleepers::Sleepers;
-use super::surface::Surface;
+use super::surface::{Placed, Surface};
 use glam::DVec3;
+
+/// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Way {
+    pub(super) drift: DVec3,
+    pub(super) spread: f64,
+}
+
+impl Way {
+    /// That of points from places to others.
+    pub(super) fn of(from: &[DVec3], to: &[DVec3]) -> Self {
+        let by = from.iter().zip(to).map(|(&from, &to)| to - from);
+        // Any vector will do: the nearer it is to the mean, the less is left.
+        let some = by.clone().step_by(from.len().div_ceil(8).max(1));
+        let count = some.len().max(1) as f64;
+        let drift = some.sum::<DVec3>() / count;
+        let far = by.map(|by| by.distance_squared(drift)).fold(0.0, |most, far| if far > most { far } else { most });
+        Self { drift, spread: far.sqrt() }
+    }
+
+    pub(super) fn relative(self, other: Self) -> f64 {
+        (self.drift - other.drift).length() + self.spread + other.spread
+    }
+
+    pub(super) fn length(self) -> f64 {
+        self.drift.length() + self.spread
+    }
+}
 
 /// What pairs see of a surface.
 #[derive(Clone, Debug, Default)]

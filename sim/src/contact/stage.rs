@@ -2,11 +2,10 @@
 
 use super::cross::crossings;
 use super::extent::Extent;
-use super::features::Placed;
 use super::ground::Grounds;
+use super::known::Known;
 use super::rule::Law;
-use super::step::Known;
-use super::surface::Surface;
+use super::surface::{Placed, Surface};
 use super::{Contacts, Obstacle, Side};
 use crate::motion::Interval;
 use crate::part::Part;

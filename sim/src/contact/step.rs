@@ -1,38 +1,16 @@
 //! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
 
-use super::end::{End, Ends};
-use super::extent::Extent;
+use super::end::End;
 use super::features::Kind;
-use super::near::Way;
+use super::known::Known;
 use super::pair::{Look, Pair};
 use super::rule::Moved;
-use super::shown::{Seen, Shown};
+use super::shown::{Seen, Shown, Way};
 use super::stage::Stage;
 use super::{Impulses, Side, Source};
 use crate::crew::Crew;
 use glam::DVec3;
 use std::sync::PoisonError;
-
-/// What is known of the last step.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Known {
-    /// Positions at the start of the last step, of nodes and of points of obstacles (m); empty if nothing is known.
-    last: Vec<DVec3>,
-    /// Those of this one.
-    ends: Ends,
-    pairs: Vec<Pair>,
-    /// The way (m) of any two surfaces until others than the pairs may meet.
-    left: f64,
-    shown: Vec<Shown>,
-    /// Whether each surface is in a pair.
-    is_near: Vec<bool>,
-    /// What pairs lend each other.
-    looks: Vec<Look>,
-    /// Places, boxes around the surfaces, and the order in which they begin, while bodies are asked whether they can go alone.
-    pub(super) now: Vec<DVec3>,
-    pub(super) extents: Vec<Extent>,
-    pub(super) order: Vec<usize>,
-}
 
 impl Stage {
     /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, each with the number of its grip: they

@@ -38,6 +38,29 @@ pub(crate) struct Surface {
     pub(super) is_round: bool,
 }
 
+/// A surface with the places of its points (m).
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) at: &'a [DVec3],
+}
+
+impl Placed<'_> {
+    /// The corners of a facet that count.
+    pub(super) fn used(&self, facet: u32) -> &[u32] {
+        self.surface.facets[facet as usize].used()
+    }
+
+    /// The radius of a round obstacle (m); zero of other surfaces.
+    pub(super) fn radius(&self) -> f64 {
+        if self.surface.is_round { self.surface.thickness } else { 0.0 }
+    }
+
+    pub(super) fn point(&self, point: u32) -> DVec3 {
+        self.at[point as usize]
+    }
+}
+
 /// A point, segment or triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facet {

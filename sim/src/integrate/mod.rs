@@ -20,12 +20,13 @@ use self::semi_implicit_euler::SemiImplicitEuler;
 use self::velocity_verlet::VelocityVerlet;
 use super::body::Body;
 use super::contact::Timing;
-use super::dynamics::{Dynamics, SpeedLimit};
+use super::dynamics::Dynamics;
+use super::limit::SpeedLimit;
 use super::model::{ElasticModel, Scratch};
 pub use super::motion::Interval;
 use super::part::Part;
-pub use super::state::Runaway;
 use super::state::{Nodes, State};
+pub use super::state::{Runaway, Unsolved};
 use super::system::System;
 use glam::DVec3;
 use std::sync::Arc;
@@ -155,37 +156,6 @@ pub trait Method: Send + Sync {
     fn unsolved(&self, state: &State) -> Option<Unsolved> {
         let _ = state;
         None
-    }
-}
-
-/// Steps whose equation an implicit method has not solved to round-off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
-pub struct Unsolved {
-    /// Their number.
-    pub steps: u64,
-    /// The largest residual of a node (m/s).
-    pub residual: f64,
-    /// The end of the first of them (s).
-    pub first: f64,
-}
-
-impl Unsolved {
-    /// With one more step that ends at a time (s).
-    fn after(known: Option<Self>, time: f64, residual: f64) -> Self {
-        let Self { steps, residual: largest, first } = known.unwrap_or(Self { steps: 0, residual, first: time });
-        Self { steps: steps + 1, residual: largest.max(residual), first }
-    }
-
-    /// As the memory of an integrator.
-    fn numbers(&self) -> [f64; 3] {
-        [self.steps as f64, self.residual, self.first]
-    }
-
-    /// From such a memory.
-    fn remembered(memory: &[f64]) -> Option<Self> {
-        let &[steps, residual, first] = memory else { return None };
-        Some(Self { steps: steps as u64, residual, first })
     }
 }
 

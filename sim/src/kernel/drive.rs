@@ -5,10 +5,11 @@ use super::{Around, Compiled, Conditions, FeelGrip, Forces, Held, Meeting, Place
 use crate::body::Body;
 use crate::contact::{Bound, End, Floor, Obstacle, Placed, Source};
 use crate::crew::Crew;
-use crate::dynamics::{Dynamics, SpeedLimit};
+use crate::dynamics::Dynamics;
 use crate::grip::Grip;
 use crate::lanes::Set;
 use crate::law::Energy;
+use crate::limit::SpeedLimit;
 use crate::model::{ElasticModel, Report, Share};
 use crate::part::Part;
 use crate::state::{Memory, Nodes, Runaway, State};

@@ -2,7 +2,7 @@
 
 use super::World;
 use crate::crew::Crew;
-use crate::dynamics::SpeedLimit;
+use crate::limit::SpeedLimit;
 use glam::DVec3;
 use std::sync::Arc;
 

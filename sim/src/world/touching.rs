@@ -3,7 +3,8 @@
 use super::World;
 use crate::contact::{ContactPoint, Impulses, Reaction, Side, Source};
 use crate::diagnostics::{Diagnostic, Outside};
-use crate::dynamics::{Dynamics, SpeedLimit};
+use crate::dynamics::Dynamics;
+use crate::limit::SpeedLimit;
 use crate::state::{Runaway, State};
 use crate::surroundings::Surroundings;
 use crate::system::System;

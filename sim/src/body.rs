@@ -1,16 +1,12 @@
 //! The [`Body`]: nodes, masses and elements at rest.
 
 use super::carried::Carried;
-use super::element::{Dimension, ElementKind, around};
+use super::element::{Dimension, ElementKind};
 use super::hull::{Hulls, bounds};
 use super::lists::IndexLists;
 use super::topology::{Elements, Faces};
 use glam::DVec3;
 use std::sync::Arc;
-
-mod builder;
-
-pub use builder::{BodyError, NewBody};
 
 /// A deformable body at rest. It is immutable, and all runs of a scene share it.
 ///
@@ -44,11 +40,6 @@ pub struct Body {
 }
 
 impl Body {
-    /// Begins a body of nodes with these positions at rest (m).
-    pub fn builder(rest: Vec<DVec3>) -> NewBody {
-        NewBody::new(rest)
-    }
-
     /// Whether it meets half-spaces with the points of a carried surface, where surfaces meet. Other bodies meet them with their nodes.
     pub(crate) fn meets_by_surface(&self) -> bool {
         self.carried.is_some() && self.dimension == Dimension::Space
@@ -177,16 +168,6 @@ impl Body {
         let (low, high) = bounds(&self.rest);
         (high - low).max_element()
     }
-}
-
-/// Whether the normal of a face points out of an element at rest. It does for an element in the plane of the face.
-fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
-    let mean = |nodes: &[u32]| nodes.iter().map(|&node| rest[node as usize]).sum::<DVec3>() / nodes.len() as f64;
-    let middle = mean(face);
-    let at = |node: u32| rest[node as usize] - middle;
-    let area: DVec3 = around(face).map(|[a, b]| at(a).cross(at(b))).sum();
-    let inwards = mean(element) - middle;
-    area.dot(inwards) <= 1e-9 * area.length() * inwards.length()
 }
 
 #[cfg(test)]

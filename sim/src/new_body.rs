@@ -1,12 +1,12 @@
 //! Making a [`Body`] from nodes and elements, with every mistake told in place.
 
-use super::{Body, looks_out};
-use crate::carried::Carried;
-use crate::element::{Dimension, Solids, kind};
-use crate::fill;
-use crate::hull::Hulls;
-use crate::lists::IndexLists;
-use crate::topology::{Elements, assign_faces};
+use super::body::Body;
+use super::carried::Carried;
+use super::element::{Dimension, Solids, around, kind};
+use super::fill;
+use super::hull::Hulls;
+use super::lists::IndexLists;
+use super::topology::{Elements, assign_faces};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -49,6 +49,13 @@ impl BodyError {
     /// An index that is not there.
     fn missing(of: &'static str, at: usize, what: &str, index: u32, last: usize) -> Self {
         Self::new(of, at, format!("{of} {at} names {what} {index}; the last one is {last}"))
+    }
+}
+
+impl Body {
+    /// Begins a body of nodes with these positions at rest (m).
+    pub fn builder(rest: Vec<DVec3>) -> NewBody {
+        NewBody::new(rest)
     }
 }
 
@@ -288,4 +295,14 @@ impl Body {
         }
         Ok(Self { carried, ..self })
     }
+}
+
+/// Whether the normal of a face points out of an element at rest. It does for an element in the plane of the face.
+fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
+    let mean = |nodes: &[u32]| nodes.iter().map(|&node| rest[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+    let middle = mean(face);
+    let at = |node: u32| rest[node as usize] - middle;
+    let area: DVec3 = around(face).map(|[a, b]| at(a).cross(at(b))).sum();
+    let inwards = mean(element) - middle;
+    area.dot(inwards) <= 1e-9 * area.length() * inwards.length()
 }
