@@ -4,7 +4,6 @@
 use super::motion::{Interval, Motion, Pose};
 use super::state::State;
 use glam::DVec3;
-use std::ops::Range;
 
 /// A kinematic constraint: from one time to another its nodes follow a path, whatever forces act on them.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +36,24 @@ impl Grip {
     }
 }
 
-impl Grip {
-    /// A range that contains its nodes.
-    pub(super) fn span(&self) -> Range<usize> {
-        let (first, last) = (self.nodes.iter().min(), self.nodes.iter().max());
-        first.zip(last).map_or(0..0, |(&first, &last)| first as usize..last as usize + 1)
+/// How gripped nodes move in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    middle: DVec3,
+    /// The displacement at the end of the step.
+    to: Pose,
+    /// That at its start; `None` in the step in which they are gripped.
+    from: Option<Pose>,
+    step: f64,
+}
+
+impl Way {
+    /// The position (m) at the end of the step of a node that was gripped at a place (m), and its velocity (m/s), which is its
+    /// displacement in the step divided by the step. With that velocity it moves on when it is released.
+    pub(super) fn of(&self, gripped: DVec3) -> (DVec3, DVec3) {
+        let to = self.to.apply(self.middle, gripped);
+        let from = self.from.map_or(gripped, |before| before.apply(self.middle, gripped));
+        (to, (to - from) / self.step)
     }
 }
 
@@ -87,19 +99,29 @@ impl Grip {
         }
     }
 
-    /// For each node that is held at the end of a step: its position then (m), and its velocity (m/s), which is its
-    /// displacement in the step divided by the step. With that velocity it moves on when it is released.
+    /// Where the nodes were when they were gripped (m).
+    pub(super) fn gripped(memory: &[f64]) -> impl Iterator<Item = DVec3> + Clone {
+        memory[1..].as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at))
+    }
+
+    /// The way of its nodes in a step, about the middle of where they were gripped (m).
+    pub(super) fn way(&self, Interval { begin, end, step }: Interval, middle: DVec3) -> Way {
+        Way { middle, to: self.pose(end), from: self.moves(begin).then(|| self.pose(begin)), step }
+    }
+
+    /// The middle of where its nodes were gripped (m).
+    pub(super) fn middle(&self, memory: &[f64]) -> DVec3 {
+        Self::gripped(memory).sum::<DVec3>() / self.nodes.len().max(1) as f64
+    }
+
+    /// For each node that is held at the end of a step: its position then (m), and its velocity (m/s).
     pub(super) fn moved(&self, interval: Interval, memory: &[f64]) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
-        let Interval { begin, end, step } = interval;
-        let is_held = self.moves(end) && memory[0] == 1.0;
-        let gripped = memory[1..].as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at));
-        let middle = gripped.clone().sum::<DVec3>() / self.nodes.len().max(1) as f64;
-        let (way, before) = (self.pose(end), self.moves(begin).then(|| self.pose(begin)));
-        let nodes = self.nodes.iter().zip(gripped).take(if is_held { usize::MAX } else { 0 });
-        nodes.map(move |(&node, start)| {
-            let to = way.apply(middle, start);
-            let from = before.map_or(start, |before| before.apply(middle, start));
-            (node as usize, to, (to - from) / step)
+        let is_held = self.moves(interval.end) && memory[0] == 1.0;
+        let way = self.way(interval, self.middle(memory));
+        let nodes = self.nodes.iter().zip(Self::gripped(memory)).take(if is_held { usize::MAX } else { 0 });
+        nodes.map(move |(&node, gripped)| {
+            let (to, speed) = way.of(gripped);
+            (node as usize, to, speed)
         })
     }
 

@@ -177,10 +177,10 @@ impl System {
         self.grips(memory).any(|(grip, memory)| grip.takes(end, memory))
     }
 
-    /// Whether a grip holds nodes at the end of the step after `steps` steps.
-    pub(super) fn holds(&self, steps: u64) -> bool {
-        let end = self.interval(steps).end;
-        self.surroundings.grips.iter().any(|grip| grip.moves(end))
+    /// Whether a grip that held nodes at the beginning of the step after `steps` steps does not hold them at its end.
+    pub(super) fn releases(&self, steps: u64) -> bool {
+        let Interval { begin, end, .. } = self.interval(steps);
+        self.surroundings.grips.iter().any(|grip| grip.moves(begin) && !grip.moves(end))
     }
 
     /// Each grip with its part of the memory.

@@ -1,12 +1,12 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
+use super::held::Held;
 use super::stepper::{PartStepper, Rollback, Scheme};
-use super::{Around, Compiled, Conditions, FeelGrip, Forces, Held, Meeting, PlaceNode, Push};
+use super::{Around, Compiled, Conditions, Forces, Meeting, Push};
 use crate::body::Body;
 use crate::contact::{Bound, End, Floor, Obstacle, Placed, Source};
 use crate::crew::Crew;
 use crate::dynamics::Dynamics;
-use crate::grip::Grip;
 use crate::lanes::Set;
 use crate::law::Energy;
 use crate::limit::SpeedLimit;
@@ -72,7 +72,6 @@ impl Dynamics for ByKernel {
         let mut steady = Forces::default();
         let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
         let (obstacles, apart, impulses) = (&obstacles[..], &system.apart()[..], system.impulses.as_ref());
-        let spans: Vec<_> = grips.iter().map(Grip::span).collect();
         let is_still = obstacles.iter().all(|obstacle| obstacle.is_still());
         let target = rollback.steps() + count;
         while rollback.steps() < target {
@@ -85,10 +84,10 @@ impl Dynamics for ByKernel {
                 });
             }
             let memory = taken.as_ref().unwrap_or(constraints);
-            // Grips become active and inactive between stretches, and no step is repeated with other grips.
+            // Grips take and release nodes between stretches, and no step is repeated with other grips.
             let are_steady = |step: u64| system.surroundings.are_steady(system.interval(step));
             let is_new = |step: u64| {
-                let changes = system.takes(step, memory) || system.holds(step) != system.holds(step - 1);
+                let changes = system.takes(step, memory) || system.releases(step);
                 changes || are_steady(step) != are_steady(step - 1)
             };
             if taken.is_some() || begin > 0 && is_new(begin) {
@@ -105,22 +104,7 @@ impl Dynamics for ByKernel {
             let timing = rollback.scheme().timing();
             let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
             let unfeeling = system.unfeeling(system.interval(begin), memory);
-            let end = system.interval(begin).end;
-            let overlap = |span: &Range<usize>, nodes: &Range<usize>| span.start < nodes.end && nodes.start < span.end;
-            let hold = |nodes: &Range<usize>| {
-                grips.iter().zip(&spans).any(|(grip, span)| grip.moves(end) && overlap(span, nodes))
-            };
-            let place = |nodes: &Range<usize>, step: u64, share: f64, place: &mut PlaceNode<'_>| {
-                let own = system.grips(memory).zip(&spans).enumerate().filter(|(_, (_, span))| overlap(span, nodes));
-                for (number, ((grip, memory), _)) in own {
-                    let moved = grip.moved_by(system.interval(step), share, memory);
-                    let own = moved.filter(|(node, ..)| nodes.contains(node));
-                    own.for_each(|(node, to, speed)| place(number, node - nodes.start, to, speed));
-                }
-            };
-            let feel = |step: u64, [grip, node]: [usize; 2], before: [DVec3; 2], after: [DVec3; 2]| {
-                system.feel(system.interval(step).end, Source::Grip(grip), node, before, after);
-            };
+            let held = Held::new(system, begin, memory);
             let meet = |step: u64, before: Nodes<'_>, after: &mut State, changed: &mut Vec<u32>| {
                 let (interval, State { position, velocity, .. }) = (system.interval(step), after);
                 system.meet(End { interval, before, position, velocity, timing, changed, impulses }, memory);
@@ -172,11 +156,7 @@ impl Dynamics for ByKernel {
                 impulses,
                 floor: met.floor().filter(|_| impulses.is_none()),
                 apart,
-                grips: system.holds(begin).then_some(Held {
-                    hold: &hold,
-                    place: &place,
-                    feel: impulses.map(|_| &feel as &FeelGrip<'_>),
-                }),
+                grips: Some(&held),
                 held: &[],
                 meeting: system.contact.as_ref().map(|stage| Meeting {
                     meet: &meet,

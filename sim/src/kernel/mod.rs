@@ -8,6 +8,7 @@
 
 mod drive;
 pub(crate) mod general;
+mod held;
 pub(crate) mod lattice;
 mod memory;
 pub mod peak;
@@ -32,6 +33,7 @@ use crate::state::{Nodes, State};
 use crate::work::Work;
 use general::General;
 use glam::DVec3;
+use held::Held;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -110,27 +112,6 @@ pub(crate) mod damped {
 /// The last argument is its constant acceleration in the step (m/s²), zero if it moved at constant velocity.
 pub(crate) type Resolve<'a> = dyn Fn(u64, usize, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
 
-/// Called with the number of a grip, a node, its position (m) and its velocity (m/s).
-pub(crate) type PlaceNode<'a> = dyn FnMut(usize, usize, DVec3, DVec3) + 'a;
-
-/// Takes the numbers of a step, a grip and a node that it places, and the position (m) and velocity (m/s) of the node before and after.
-pub(crate) type FeelGrip<'a> = dyn Fn(u64, [usize; 2], [DVec3; 2], [DVec3; 2]) + Sync + 'a;
-
-/// Places the nodes of a range that grips hold at the end of a step of this number, after a share of the step: calls its
-/// last argument for each of them, counted from the start of the range.
-pub(crate) type Place<'a> = dyn Fn(&Range<usize>, u64, f64, &mut PlaceNode<'_>) + Sync + 'a;
-
-/// The grips that hold nodes, of any parts.
-#[derive(Clone, Copy)]
-pub(crate) struct Held<'a> {
-    /// Whether they may hold some of a range of nodes.
-    pub(crate) hold: &'a (dyn Fn(&Range<usize>) -> bool + Sync),
-    /// Places those that they hold.
-    pub(crate) place: &'a Place<'a>,
-    /// Adds up what they do, if that is asked for.
-    pub(crate) feel: Option<&'a FeelGrip<'a>>,
-}
-
 /// Changes the positions (m) and velocities (m/s) of nodes at the end of a step of this number that began at the given ones, and adds those that
 /// it changes to a list.
 pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut State, &mut Vec<u32>) + Sync + 'a;
@@ -204,7 +185,7 @@ pub(crate) struct Around<'a> {
     /// The nodes of parts that meet no obstacle.
     pub(crate) apart: &'a [Range<usize>],
     /// The nodes that grips hold, if any grip is active.
-    pub(crate) grips: Option<Held<'a>>,
+    pub(crate) grips: Option<&'a Held<'a>>,
     /// Whether each node of the part is one of them, which has no speed of its own; empty if none is.
     pub(crate) held: &'a [bool],
     /// Contact of surfaces, if they can meet.

@@ -190,7 +190,7 @@ pub(crate) struct PartStepper {
 
 impl PartStepper {
     fn passes(&self, scheme: Scheme, steps: &Range<u64>, around: &Around<'_>) -> Passes {
-        let is_held = around.grips.is_some_and(|grips| (grips.hold)(&self.nodes));
+        let is_held = around.grips.is_some_and(|grips| grips.hold(&self.nodes));
         Passes {
             scheme,
             is_damped: self.stepper.is_damped() || around.mass_damping > 0.0,
@@ -211,20 +211,18 @@ impl PartStepper {
         let around = &Around { forces, resolve: &resolve, ..*around };
         let free = Around { bounds: &[], row: &|_| 0..0, floor: None, ..*around };
         let around = if around.apart.contains(nodes) { &free } else { around };
-        let lost = match around.grips.filter(|grips| (grips.hold)(nodes)) {
+        let held = around.grips.and_then(|grips| Some((grips, grips.mask(nodes)?)));
+        let lost = match held {
             None => stepper.run(passes, some, around, crew),
-            Some(grips) => {
-                // All steps have the same grips.
-                let mut held = vec![false; nodes.len()];
-                (grips.place)(nodes, passes.first, 1.0, &mut |_, node, _, _| held[node] = true);
-                let around = Around { held: &held, ..*around };
+            Some((grips, mask)) => {
+                let around = Around { held: &mask, ..*around };
                 some.into_iter().find_map(|pass| {
                     let lost = stepper.run(passes, pass..pass + 1, &around, crew);
                     let Pass { number, shares: [_, share], .. } = passes.get(pass);
-                    (grips.place)(nodes, number, share, &mut |grip, node, position, velocity| {
-                        if let Some(feel) = grips.feel {
+                    grips.place(nodes, number, share, |grip, node, position, velocity| {
+                        if grips.is_felt() {
                             let (at, speed) = stepper.node(node);
-                            feel(number, [grip, first + node], [at, speed], [position, velocity]);
+                            grips.feel(number, [grip, first + node], [at, speed], [position, velocity]);
                         }
                         stepper.set_node(node, position, velocity);
                     });

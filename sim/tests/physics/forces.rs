@@ -64,6 +64,36 @@ fn is_fast(integrator: Integrator) -> bool {
     !matches!(integrator, Integrator::RungeKutta | Integrator::DormandPrince | Integrator::BackwardEuler)
 }
 
+/// Nodes that one grip lets go while another holds on feel obstacles from then on, however many steps are taken at once.
+#[test]
+fn released_nodes_feel_obstacles_at_once() {
+    const STEPS: u64 = 200;
+    const STEP: f64 = 1e-3;
+    let body = lattice(1, 0.1);
+    let [top, bottom] = [0.1, 0.0]
+        .map(|y| -> Vec<u32> { (0..8).filter(|&node| (body.rest()[node as usize].y - y).abs() < 1e-9).collect() });
+    let lift = |nodes: &[u32], until| Grip { nodes: nodes.to_vec(), from: 0.0, until, motion: Motion::Still };
+    let grips = vec![lift(&top, f64::INFINITY), lift(&bottom, 10.5 * STEP)];
+    let floor = obstacle(Shape::Floor { normal: DVec3::Y, height: 0.0 });
+    let around = Surroundings { gravity: GRAVITY, grips, obstacles: vec![floor], ..Surroundings::default() };
+    // Stretched upwards, so that the elements pull the lower nodes to the floor.
+    let stretched = body.rest().iter().map(|&at| at + DVec3::Y * if at.y < 0.05 { 0.04 } else { 0.0 }).collect();
+    for kernel in [Kernel::Fast, Kernel::Reference] {
+        let stepping = Stepping { kernel, ..Stepping::new(Integrator::default(), STEP) };
+        let start = State::at_rest(Vec::clone(&stretched));
+        let mut world = World::new(&body, start, &shape_based(1e3, 1.0), around.clone(), stepping);
+        world.keep_reactions(Moment::at(STEPS as f64 * STEP));
+        world.advance(STEPS);
+        let forces = world.reactions().expect("an interval has ended");
+        let momentum: DVec3 = world.state().velocity.iter().zip(body.mass()).map(|(&speed, &mass)| speed * mass).sum();
+        let (mass, time) = (body.mass().iter().sum::<f64>(), STEPS as f64 * STEP);
+        let force: DVec3 = forces.iter().map(|one| one.force).sum();
+        let off = momentum - (GRAVITY * mass + force) * time;
+        assert!(off.length() < 1e-12 * mass, "{kernel:?}: {off}");
+        assert!(forces.iter().any(|one| matches!(one.from, Source::Obstacle(0)) && one.force.y > 0.0), "{forces:?}");
+    }
+}
+
 /// Of each body, gravity, contact and constraints change the momentum to round-off, with every integrator, code and rule; a pair pushes itself
 /// nowhere.
 #[test]

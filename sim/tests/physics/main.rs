@@ -40,6 +40,8 @@ mod readings;
 mod recording;
 mod rest;
 mod runaway;
+#[cfg(feature = "scene")]
+mod settled;
 mod shape_matching;
 mod stability;
 mod state;

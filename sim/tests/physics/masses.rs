@@ -2,7 +2,6 @@
 
 use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
-use localshape_sim::model::ModelParameters;
 use localshape_sim::model::shape_based::ShapeBased;
 use localshape_sim::rotation::{linearised, moment, torque};
 use localshape_sim::{Body, Ease, Grip, Integrator, Key, Motion, Offset, State, Stepping, Surroundings, World};
@@ -72,13 +71,14 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
 }
 
 /// `ζ = D / 2√(km)` with the mass of the lightest node, as in the cycle of which a step is a fraction.
+#[cfg(feature = "scene")]
 #[test]
 fn a_damping_ratio_is_about_the_lightest_node() {
     let body = Body::clone(&uneven()).with_masses(vec![4.0, 2.0, 9.0, 4.0, 4.0, 4.0, 4.0, 4.0]).expect("masses");
     let damping = 2.0 * 0.3 * (50.0f64 * 2.0).sqrt();
     let json = |kind: &str| serde_json::json!({ "kind": kind, "stiffness": 50.0, "damping_ratio": 0.3 });
     for kind in ["shape-based", "mass-spring"] {
-        let parameters: ModelParameters = serde_json::from_value(json(kind)).expect("a model");
+        let parameters: localshape_sim::model::ModelParameters = serde_json::from_value(json(kind)).expect("a model");
         let model = parameters.resolve(&body, None).expect("it fits");
         let text = format!("{model:?}");
         assert!(text.contains(&format!("damping: {damping:?}")), "{text}");

@@ -1,6 +1,7 @@
 //! The shape model as a material: its moduli, its bending, its modes and its waves, compared with closed forms.
 
-use super::support::{self, Noise, Remembering, bricks, forces, settled};
+use super::settled::settled;
+use super::support::{self, Noise, Remembering, bricks, forces};
 use glam::{DMat3, DVec3};
 use localshape_sim::geometry::volumes_at_rest;
 use localshape_sim::model::shape_based::ShapeBased;
