@@ -509,21 +509,6 @@ mod tests {
     }
 
     #[test]
-    fn the_order_of_the_points_only_renames_them() {
-        let points = dodecahedron();
-        let backwards: Vec<_> = points.iter().rev().copied().collect();
-        let last = points.len() as u32 - 1;
-        let mut renamed: Vec<Vec<u32>> =
-            faces(&backwards).iter().map(|face| face.iter().map(|&place| last - place).collect()).collect();
-        for face in &mut renamed {
-            let lowest = (0..face.len()).min_by_key(|&at| face[at]).unwrap();
-            face.rotate_left(lowest);
-        }
-        renamed.sort_unstable();
-        assert_eq!(renamed, faces(&points));
-    }
-
-    #[test]
     fn volume_is_that_of_the_solid() {
         let edge = 2.0 / golden();
         let expected = (15.0 + 7.0 * 5f64.sqrt()) / 4.0 * edge * edge * edge;

@@ -109,58 +109,50 @@ mod tests {
         2.0 * difference.xyz().length().min(1.0).asin()
     }
 
+    /// How Eq. (15) is read as a rotation.
+    type Reading = fn(DMat3) -> DQuat;
+    const ARCTANGENT: Reading = |a| rotation_by_arctangent(solve(a));
+    const LENGTH: Reading = |a| rotation_by_length(solve(a));
+
+    /// The error of the rotation (rad) of a box that is turned by an angle (degrees), after some passes.
+    fn error(sides: [f64; 3], axis: DVec3, degrees: f64, passes: u32, reading: Reading) -> f64 {
+        let [x, y, z] = sides;
+        let rest = corners(x, y, z);
+        let turned = DQuat::from_axis_angle(axis.normalize(), degrees.to_radians());
+        let a = moment(&rest, rest.iter().map(|&r| turned * r));
+        angle_error(turned, iterate(a, DQuat::IDENTITY, passes, reading).rotation)
+    }
+
+    /// The independent values are for another axis, so only magnitudes can agree. They tell the two readings, and the symmetric matrix
+    /// (0.033, 1.9e-6, 1e-16 at 40°), apart.
     #[test]
     fn errors_after_each_pass_are_those_of_an_independent_implementation() {
-        // A 1 × 0.7 × 0.4 box. The independent values are for another axis, so only magnitudes can agree. They exclude
-        // the reading `θ = |w|` (0.16, 4.9e-3, 1e-6 at 40°) and the symmetric matrix (0.033, 1.9e-6, 1e-16).
-        let rest = corners(1.0, 0.7, 0.4);
-        for (degrees, independent) in [(10f64, [4.2e-3, 1.8e-6, 4e-13]), (40.0, [0.075, 5.7e-4, 5e-8])] {
-            let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
-            let a = moment(&rest, rest.iter().map(|&r| turned * r));
+        for (reading, degrees, independent) in [
+            (ARCTANGENT, 10.0, [4.2e-3, 1.8e-6, 4e-13]),
+            (ARCTANGENT, 40.0, [0.075, 5.7e-4, 5e-8]),
+            (LENGTH, 10.0, [4.7e-3, 3.4e-6, 1e-12]),
+            (LENGTH, 40.0, [0.16, 4.9e-3, 1e-6]),
+        ] {
             for (passes, expected) in (1..).zip(independent) {
-                let error = angle_error(
-                    turned,
-                    iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve(a))).rotation,
-                );
+                let error = error([1.0, 0.7, 0.4], DVec3::new(1.0, 2.0, 3.0), degrees, passes, reading);
                 // Each pass squares the error, so a factor in the first one is squared as well.
                 let factor = 2f64.powi(1 << (passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
             }
         }
+        for (passes, expected) in [(1, 1.8e-3), (2, 1.9e-9)] {
+            let error = error([1.0; 3], DVec3::Y, 10.0, passes, LENGTH);
+            assert!((error / expected - 1.0).abs() < 0.05, "a cube, {passes}: {error:e}");
+        }
     }
 
-    #[test]
-    fn the_length_as_angle_has_the_errors_of_an_independent_implementation() {
-        let rest = corners(1.0, 0.7, 0.4);
-        for (degrees, independent) in [(10f64, [4.7e-3, 3.4e-6, 1e-12]), (40.0, [0.16, 4.9e-3, 1e-6])] {
-            let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
-            let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            for (passes, expected) in (1..).zip(independent) {
-                let error =
-                    angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))).rotation);
-                let factor = 2f64.powi(1 << (passes - 1));
-                assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
-            }
-        }
-        // A cube turned by 10°: 1.8e-3, 1.9e-9.
-        let rest = corners(1.0, 1.0, 1.0);
-        let turned = DQuat::from_axis_angle(DVec3::Y, 10f64.to_radians());
-        let a = moment(&rest, rest.iter().map(|&r| turned * r));
-        for (passes, expected) in [(1, 1.8e-3), (2, 1.9e-9)] {
-            let error =
-                angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))).rotation);
-            assert!((error / expected - 1.0).abs() < 0.05, "{passes}: {error:e}");
-        }
-    }
+    /// The axis of turns that have no plane or axis in common with boxes.
+    const OBLIQUE: DVec3 = DVec3::new(0.3, -0.5, 0.7);
 
     #[test]
     fn one_pass_is_exact_for_a_rigidly_turned_cube_below_a_quarter_turn() {
-        let rest = corners(1.0, 1.0, 1.0);
-        for degrees in [1.0f64, 10.0, 45.0, 80.0, 89.0] {
-            let turned = DQuat::from_axis_angle(DVec3::new(0.3, -0.5, 0.7).normalize(), degrees.to_radians());
-            let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            let error =
-                angle_error(turned, iterate(a, DQuat::IDENTITY, 1, |a| rotation_by_arctangent(solve(a))).rotation);
+        for degrees in [1.0, 10.0, 45.0, 80.0, 89.0] {
+            let error = error([1.0; 3], OBLIQUE, degrees, 1, ARCTANGENT);
             assert!(error < 1e-13, "{degrees}°: {error:e}");
         }
     }
@@ -179,12 +171,9 @@ mod tests {
 
     #[test]
     fn beyond_a_quarter_turn_the_exact_optimum_takes_over() {
-        let rest = corners(1.0, 0.7, 0.4);
-        for degrees in [91.0f64, 120.0, 179.0, 180.0] {
-            let turned = DQuat::from_axis_angle(DVec3::new(0.3, -0.5, 0.7).normalize(), degrees.to_radians());
-            let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            let found = iterate(a, DQuat::IDENTITY, 4, |a| rotation_by_arctangent(solve(a))).rotation;
-            assert!(angle_error(turned, found) < 1e-9, "{degrees}°: {found}");
+        for degrees in [91.0, 120.0, 179.0, 180.0] {
+            let error = error([1.0, 0.7, 0.4], OBLIQUE, degrees, 4, ARCTANGENT);
+            assert!(error < 1e-9, "{degrees}°: {error:e}");
         }
     }
 

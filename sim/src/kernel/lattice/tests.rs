@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::contact::{Bound, Obstacle, Shape};
-use crate::kernel::Conditions;
 use crate::kernel::tests::{
     FREE, Moving, PEFRL, Whole, obstacle, same, shape_based, stepped_by_reference, with_rotations,
 };
@@ -203,21 +202,6 @@ fn rigid_motion_is_left_alone() {
         let most = found.velocity.iter().zip(&state.velocity).map(change).fold(0.0, f64::max);
         // Of the damping of velocities of some m/s, 0.1 a step: the round-off of positions of 900 m.
         assert!(most < 1e-12, "{most:e}");
-    }
-}
-
-#[test]
-fn steps_are_those_of_the_kernel_for_any_elements() {
-    let body = lattice([5, 3, 4], DVec3::new(0.5, 0.3, 0.8));
-    let state = start(&body, 0.05);
-    for parameters in beyond() {
-        let scheme = Scheme::SemiImplicitEuler;
-        let conditions = Conditions { scheme, step: STEP, set: Set::best() };
-        let stepper = model(&body, parameters).by_law(&body, &conditions, None).stepper;
-        let start = with_rotations(&body, state.clone());
-        let (of_general, _) = advanced(Moving::new(stepper, &start, scheme, 1), &start, [1, 200]);
-        let (found, _) = run(&body, &state, parameters, Set::best(), 1, 200);
-        assert!(distance(&of_general, &found) < 1e-12, "{parameters:?}: {:e}", distance(&of_general, &found));
     }
 }
 
