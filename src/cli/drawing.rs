@@ -14,10 +14,9 @@ use crate::output::{
 };
 use crate::picture::{Composer, Picture};
 use crate::render::{Pending, RenderError, Renderer};
+use crate::runner::Frame;
 use crate::runner::history::History;
-use crate::runner::{Frame, RunFrame};
 use crate::scene::Scene;
-use crate::sim::{Diagnostic, Snapshot};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,13 +43,11 @@ const MOST_WRITERS: usize = 4;
 pub(super) struct Drawing<'a> {
     scene: &'a Scene,
     composer: Option<Composer<'a>>,
-    /// The last composed frame and its picture, if pictures depend on states only. Equal states are not composed again.
-    still: Option<(Frame, Arc<Picture>)>,
     renderer: Renderer,
     /// The frame that is drawn while the next one is simulated and composed.
     begun: Option<Begun>,
     /// The last picture and its pixels. An equal picture is not drawn again.
-    last: Option<(Arc<Picture>, Arc<Vec<u8>>)>,
+    last: Option<(Picture, Arc<Vec<u8>>)>,
     /// The number of pictures that were not drawn again.
     repeated: usize,
     /// The folder with frames of an earlier command, which are kept if they are the same.
@@ -73,7 +70,7 @@ pub(super) struct Drawing<'a> {
 struct Begun {
     frame: u64,
     texts: Texts,
-    picture: Arc<Picture>,
+    picture: Picture,
     pixels: Pixels,
 }
 
@@ -97,7 +94,6 @@ impl<'a> Drawing<'a> {
         Ok(Self {
             scene,
             composer: None,
-            still: None,
             renderer: Renderer::new(device.gpu.as_ref(), scene.view.size)?,
             begun: None,
             last: None,
@@ -120,21 +116,9 @@ impl<'a> Drawing<'a> {
         (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi))
     }
 
-    /// The picture of a frame.
-    fn compose(&mut self, frame: &Frame) -> Arc<Picture> {
-        if let Some((_, picture)) = self.still.as_ref().filter(|(before, _)| have_same_states(before, frame)) {
-            return Arc::clone(picture);
-        }
-        let composer = self.composer.get_or_insert_with(|| Composer::new(self.scene, &History::default()));
-        let picture = Arc::new(composer.compose(frame));
-        self.still = (!self.scene.shows_time()).then(|| (frame.clone(), Arc::clone(&picture)));
-        picture
-    }
-
     /// Begins to draw a picture, unless it equals the last one.
-    fn submit(&mut self, picture: &Arc<Picture>) -> Result<Pixels, RenderError> {
-        let is_same = |last: &Arc<Picture>| Arc::ptr_eq(last, picture) || last == picture;
-        Ok(match self.last.as_ref().filter(|(last, _)| is_same(last)) {
+    fn submit(&mut self, picture: &Picture) -> Result<Pixels, RenderError> {
+        Ok(match self.last.as_ref().filter(|(last, _)| last == picture) {
             Some((_, pixels)) => {
                 self.repeated += 1;
                 Pixels::Drawn(Arc::clone(pixels))
@@ -228,7 +212,8 @@ impl Pictures for Drawing<'_> {
             }
         }
         let clock = Clock::thread();
-        let picture = self.compose(frame);
+        let composer = self.composer.get_or_insert_with(|| Composer::new(self.scene, &History::default()));
+        let picture = composer.compose(frame);
         self.compose_time += clock.spent();
         let cut = frame.runs.iter().zip(&picture.panels).filter(|(_, panel)| panel.is_cut);
         self.cut.extend(cut.map(|(run, _)| (run.run, frame.index)));
@@ -281,24 +266,6 @@ impl Pictures for Drawing<'_> {
         summary.films = filmed?;
         drawn
     }
-}
-
-/// Whether two frames show the same runs in the same states, at any times.
-fn have_same_states(one: &Frame, other: &Frame) -> bool {
-    // Bits are compared, since NaN is not equal to itself. Directions follow from the nodes.
-    let values = |run: &RunFrame| -> Vec<_> {
-        Diagnostic::ALL.iter().map(|one| one.value(&run.snapshot.diagnostics).size().to_bits()).collect()
-    };
-    let nodes = |run: &RunFrame| {
-        let (step, time, diagnostics) = Default::default();
-        Snapshot { step, time, diagnostics, ..run.snapshot.clone() }
-    };
-    let same = |(one, other): (&RunFrame, &RunFrame)| {
-        (one.run, &one.last_fit) == (other.run, &other.last_fit)
-            && values(one) == values(other)
-            && nodes(one) == nodes(other)
-    };
-    one.runs.len() == other.runs.len() && one.runs.iter().zip(&other.runs).all(same)
 }
 
 #[cfg(test)]

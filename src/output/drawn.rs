@@ -1,7 +1,7 @@
-//! Frames in folders, and compressed pixels that are used again: for drawing only.
+//! Frames in folders, and compressed pixels for other files: for drawing only.
 
 use super::frame_name::frame_number;
-use super::png::{file, header, pixel_dims, texts_of};
+use super::png::{header, pixel_dims, texts_of};
 use super::{
     Compression, DiagnosticsWriter, FrameFolder, OutputError, Tags, encode_print, frame_file_name, write_whole,
 };
@@ -51,19 +51,6 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
 /// If the file cannot be read.
 pub(crate) fn picture_size(path: &Path) -> Result<Option<[u32; 2]>, OutputError> {
     Ok(header(path)?.map(|reader| [reader.info().width, reader.info().height]))
-}
-
-/// Encodes a picture like [`encode_print`], with the compressed pixels of another file, which it made from equal
-/// pixels.
-pub(crate) fn encode_like(
-    (file_before, length): (&[u8], usize),
-    size: [u32; 2],
-    texts: &[(&'static str, String)],
-    dpi: Option<f64>,
-) -> Vec<u8> {
-    file(size, length, texts, Compression::Fast, dpi, |writer| {
-        image_chunks(file_before).try_for_each(|data| writer.write_chunk(png::chunk::IDAT, data))
-    })
 }
 
 /// Pixels, filtered and packed with the settings of `set`, as the contents of `IDAT` chunks.
@@ -119,18 +106,6 @@ pub(crate) fn is_drawn(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn pixels_that_are_compressed_once_give_the_same_files() {
-        let size = [40, 30];
-        let pixels: Vec<u8> = (0..40 * 30 * 3).map(|at: u32| (at * at / 7) as u8).collect();
-        let before = encode_print(size, &pixels, &[], Compression::Fast, None);
-        let later = [("frame", "8".to_owned())];
-        for dpi in [None, Some(300.0)] {
-            let again = encode_like((&before, pixels.len()), size, &later, dpi);
-            assert!(again == encode_print(size, &pixels, &later, Compression::Fast, dpi), "{dpi:?}");
-        }
-    }
 
     #[test]
     fn a_picture_with_one_wrong_bit_or_a_lost_end_is_not_kept() {

@@ -1,9 +1,9 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::{Clock, Compression, OutputError, Spent, Texts, encode_like, encode_print, frame_file_name, write_whole};
+use super::{Clock, Compression, OutputError, Spent, Texts, encode_print, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 /// A frame as drawn.
@@ -21,15 +21,11 @@ pub(crate) struct PixelFrame {
     pub texts: Texts,
 }
 
-/// The pixels of the last frame and its file, whose compressed pixels are reused for equal frames.
-type Last = Mutex<(Weak<Vec<u8>>, Arc<Vec<u8>>)>;
-
 /// Threads that compress and write frames, started as needed, up to a bound. Memory is bounded: while all threads are
 /// busy, [`Self::write`] blocks.
 pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
     frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
-    last: Arc<Last>,
     folder: PathBuf,
     /// Greatest number of threads.
     most: usize,
@@ -54,7 +50,6 @@ impl FrameWriter {
         Self {
             queue: Some(queue),
             frames,
-            last: Arc::default(),
             folder: folder.to_owned(),
             most: most.max(1),
             threads: Vec::new(),
@@ -75,9 +70,7 @@ impl FrameWriter {
         // A thread costs buffers of its own, so another one starts only when none is free.
         if self.threads.len() < self.most {
             let (folder, frames) = (self.folder.clone(), Arc::clone(&self.frames));
-            let last = Arc::clone(&self.last);
-            let work = move || write_frames(&folder, &frames, &last);
-            self.threads.push(std::thread::spawn(work));
+            self.threads.push(std::thread::spawn(move || write_frames(&folder, &frames)));
         }
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
     }
@@ -115,28 +108,16 @@ impl FrameWriter {
     }
 }
 
-/// The file of a frame. Pixels equal to the last ones are not compressed again.
-fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
-    let lock = || last.lock().unwrap_or_else(PoisonError::into_inner);
-    let PixelFrame { size, dpi, pixels, texts, .. } = frame;
-    let (known, file) = lock().clone();
-    if Weak::ptr_eq(&known, &Arc::downgrade(pixels)) {
-        return Arc::new(encode_like((&file, pixels.len()), *size, texts, *dpi));
-    }
-    let file = Arc::new(encode_print(*size, pixels, texts, Compression::Fast, *dpi));
-    *lock() = (Arc::downgrade(pixels), Arc::clone(&file));
-    file
-}
-
 /// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
-fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>, last: &Last) -> FramesWritten {
+fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>) -> FramesWritten {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let mut written = FramesWritten::default();
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
-        let bytes = compressed(&frame, last);
-        let result = write_whole(&folder.join(frame_file_name(frame.frame)), &bytes);
+        let PixelFrame { size, dpi, pixels, frame, texts } = frame;
+        let bytes = encode_print(size, &pixels, &texts, Compression::Fast, dpi);
+        let result = write_whole(&folder.join(frame_file_name(frame)), &bytes);
         written.spent += clock.spent();
         match result {
             Ok(()) => written.frames += 1,

@@ -46,7 +46,7 @@ pub(crate) use whose::Whose;
 #[cfg(feature = "render")]
 pub(crate) use {
     checkpoint::passing_frames,
-    drawn::{encode_like, frame_files, is_drawn, packed, picture_size},
+    drawn::{frame_files, is_drawn, packed, picture_size},
     frame_name::frame_file_name,
     frames::{FrameWriter, PixelFrame},
     png::Texts,

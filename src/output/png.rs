@@ -177,23 +177,11 @@ pub fn encode_print(
     compression: Compression,
     dpi: Option<f64>,
 ) -> Vec<u8> {
-    file(size, pixels.len(), texts, compression, dpi, |writer| writer.write_image_data(pixels))
-}
-
-/// A file with `length` bytes of pixels, which `write` adds.
-pub(super) fn file(
-    size: [u32; 2],
-    length: usize,
-    texts: &[(&'static str, String)],
-    compression: Compression,
-    dpi: Option<f64>,
-    write: impl FnOnce(&mut png::Writer<&mut Vec<u8>>) -> Result<(), png::EncodingError>,
-) -> Vec<u8> {
     let [width, height] = size;
     let all = u64::from(width) * u64::from(height);
-    assert!([3 * all, 4 * all].contains(&(length as u64)), "{length} bytes for {all} pixels");
-    let colour = if length as u64 == 3 * all { png::ColorType::Rgb } else { png::ColorType::Rgba };
-    let mut bytes = Vec::with_capacity(length / 8);
+    assert!([3 * all, 4 * all].contains(&(pixels.len() as u64)), "{} bytes for {all} pixels", pixels.len());
+    let colour = if pixels.len() as u64 == 3 * all { png::ColorType::Rgb } else { png::ColorType::Rgba };
+    let mut bytes = Vec::with_capacity(pixels.len() / 8);
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
@@ -209,7 +197,7 @@ pub(super) fn file(
         added.expect("the header is not written yet");
     }
     let written = encoder.write_header().and_then(|mut writer| {
-        write(&mut writer)?;
+        writer.write_image_data(pixels)?;
         writer.finish()
     });
     written.expect("a picture of the right length into memory");
