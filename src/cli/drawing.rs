@@ -258,6 +258,9 @@ impl Pictures for Drawing<'_> {
         summary.frames.written = self.device.keep.then_some(written);
         summary.frames.kept = self.kept;
         summary.frames.repeated = self.repeated;
+        // Frames that are all kept are not composed.
+        let composer = self.composer.get_or_insert_with(|| Composer::new(self.scene, &History::default()));
+        summary.frames.azimuth = composer.azimuth();
         for run in &mut summary.runs {
             let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
             run.cut = of_run.map(|(_, frame)| *frame).collect();

@@ -5,8 +5,8 @@ use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::coordinates::{Coordinates, vector};
 use crate::reading::words::quoted;
-use crate::sim::Dimension;
 use crate::sim::geometry::is_inside;
+use crate::sim::{Dimension, Obstacle, Shape};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ const DISTANCE: f64 = 8.5;
 /// A perspective camera that looks at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Azimuth to the right, from looking along −z (rad).
+    /// Azimuth to the right, from looking along −z (rad); the usual one, if it [turns](Self::turns).
     pub azimuth: f64,
     /// Elevation above the horizon (rad), less than a quarter turn either way.
     pub elevation: f64,
@@ -30,13 +30,17 @@ pub struct Camera {
     /// Whether the camera follows the centre of mass of each run's bodies, in place of the target, from a distance at
     /// which they fill their panel at their widest moment.
     pub follow: bool,
+    /// Whether pictures choose another azimuth where obstacles hide less of the bodies over the course of the scene.
+    pub turns: bool,
 }
 
 /// A camera as typed. A body in the plane is seen from the front without perspective.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraFile {
-    /// Azimuth to the right, from looking along −z (rad). Only in space. Default: 0.541, which is 31°.
+    /// Azimuth to the right, from looking along −z (rad). Only in space. Default: 0.541, which is 31°; or, where spheres,
+    /// capsules or boxes hide much of the bodies from there, the first of eleven others, 30° apart, from which they hide little. A camera with a
+    /// `target` or `distance` does not turn.
     azimuth: Option<f64>,
     /// Elevation above the horizon (rad), below a quarter turn (1.57), so that the camera does not look along its
     /// up-axis. Only in space. Default: 0.297, which is 17°.
@@ -74,13 +78,15 @@ impl CameraFile {
         };
         // Bodies that start as one point have the size of their rest shapes.
         let size = Some((high - low).max_element()).filter(|&size| size > 0.0).unwrap_or_else(|| scene.extent());
+        let follow = self.target.is_none() && self.distance.is_none();
         let camera = Camera {
             azimuth: angle(self.azimuth, 31.0),
             elevation: angle(self.elevation, 17.0),
             field_of_view: self.field_of_view.unwrap_or(20_f64.to_radians()),
             target,
             distance: self.distance.unwrap_or(DISTANCE * size),
-            follow: self.target.is_none() && self.distance.is_none(),
+            follow,
+            turns: follow && !is_flat && self.azimuth.is_none() && can_hide(scene.obstacles),
         };
         let [_, _, towards] = axes(camera.azimuth, camera.elevation);
         let eye = camera.target + camera.distance * towards;
@@ -97,6 +103,11 @@ impl CameraFile {
         }
         Some(camera)
     }
+}
+
+/// Whether obstacles can hide bodies from a camera. Grounds do not, and plates can be seen through.
+fn can_hide(obstacles: &[Obstacle]) -> bool {
+    obstacles.iter().any(|obstacle| !matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }))
 }
 
 /// The unit vectors of a camera with an azimuth and elevation (rad): right, up, and from its target to it.

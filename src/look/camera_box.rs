@@ -1,5 +1,6 @@
 //! The boxes around bodies along the axes of a camera.
 
+use super::azimuth::azimuths;
 use super::camera::axes;
 use super::view::{Traced, View};
 use crate::sim::{Assembly, Body};
@@ -10,12 +11,12 @@ use serde::{Deserialize, Serialize};
 const MANY_POINTS: usize = 10_000;
 
 /// The box around a body at one moment, along the axes of a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CameraBox {
     /// The centre of mass of the body (m).
     pub(crate) centre: DVec3,
-    /// The corners of the box, relative to the centre of mass: to the right, up and towards the camera (m).
-    pub(crate) corners: [DVec3; 2],
+    /// The corners of the box from each azimuth of the camera, relative to the centre of mass: to the right, up and towards the camera (m).
+    corners: Vec<[DVec3; 2]>,
 }
 
 /// The boxes around the bodies of a run at one moment.
@@ -31,12 +32,14 @@ impl CameraBox {
     /// The box around a body whose nodes are at positions (m), or around the surface that it carries; `None` if it has
     /// none, or not all are finite.
     fn new(view: &View, body: &Body, position: &[DVec3]) -> Option<Self> {
-        let axes = axes(view.camera.azimuth, view.camera.elevation);
+        let all: Vec<_> = azimuths(&view.camera).map(|azimuth| axes(azimuth, view.camera.elevation)).collect();
         let centre = Traced::Centre.of(body, position);
-        let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
+        let mut corners = vec![[DVec3::ZERO; 2]; all.len()];
         let mut add = |at: DVec3| {
-            let seen = DVec3::from_array(axes.map(|axis| (at - centre).dot(axis)));
-            (low, high) = (low.min(seen), high.max(seen));
+            for ([low, high], axes) in corners.iter_mut().zip(&all) {
+                let seen = DVec3::from_array(axes.map(|axis| (at - centre).dot(axis)));
+                (*low, *high) = (low.min(seen), high.max(seen));
+            }
         };
         match &body.carried() {
             Some(surface) if view.visible.surfaces && !view.visible.cage => {
@@ -45,13 +48,20 @@ impl CameraBox {
             }
             _ => position.iter().for_each(|&at| add(at)),
         }
-        (centre.is_finite() && low.is_finite() && high.is_finite()).then_some(Self { centre, corners: [low, high] })
+        let are_finite = corners.iter().flatten().all(|corner| corner.is_finite());
+        (centre.is_finite() && are_finite).then_some(Self { centre, corners })
     }
 
-    /// The larger of its width and height (m).
+    /// The corners from an azimuth of the camera, by its place. Files may lack it.
     #[cfg(feature = "render")]
-    pub(crate) fn size(&self) -> f64 {
-        let [low, high] = self.corners;
+    pub(crate) fn corners(&self, azimuth: usize) -> [DVec3; 2] {
+        self.corners.get(azimuth).copied().unwrap_or_default()
+    }
+
+    /// The larger of its width and height from there (m).
+    #[cfg(feature = "render")]
+    pub(crate) fn size(&self, azimuth: usize) -> f64 {
+        let [low, high] = self.corners(azimuth);
         (high - low).truncate().max_element()
     }
 }

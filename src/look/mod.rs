@@ -1,6 +1,7 @@
 //! The look of pictures: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from
 //! its `[view]` table and from its body, models and surroundings. Nothing here draws.
 
+mod azimuth;
 mod camera;
 mod camera_box;
 mod compared;
@@ -22,6 +23,7 @@ pub(crate) mod typed;
 mod view;
 
 pub use crate::colour::Colour;
+pub(crate) use azimuth::{Hidden, azimuths};
 pub use camera::Camera;
 pub(crate) use camera_box::CameraBoxes;
 pub(crate) use contrast::check_runs;

@@ -142,6 +142,7 @@ impl Default for View {
                 target: DVec3::ZERO,
                 distance: 1.0,
                 follow: false,
+                turns: false,
             },
             clock: String::new(),
             columns: None,
@@ -220,7 +221,7 @@ words! {
         /// those that are left do not hold its nodes together; `broken` in charts and files counts the springs.
         count,
         /// The shape error; in the plane, the smallest area ratio. Divergence is always shown. Also the height (m) of the lowest body above
-        /// the ground, if it is more than half a body's size and the camera follows.
+        /// the ground, if it is more than half a body's size or the ground is out of sight, and the camera follows.
         number,
         /// A scale bar (m), in the first panel; in space it holds at the distance of the camera's target.
         scale_bar,

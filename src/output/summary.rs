@@ -90,6 +90,9 @@ pub(crate) struct FrameSummary {
     pub repeated: usize,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
+    /// The azimuth of the camera (rad); absent in the plane and without pictures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth: Option<f64>,
 }
 
 /// The result of a run.

@@ -15,13 +15,15 @@ const FULL_ASPECT: f64 = 640.0 / 720.0;
 /// Distance of the near plane, relative to the camera's distance.
 const NEAR: f64 = 0.02;
 
-/// The target and distance of the camera of a panel.
+/// The target, distance and azimuth of the camera of a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Framing {
     /// The point looked at, the origin of the panel (m).
     pub target: DVec3,
     /// Distance from the target (m).
     pub distance: f64,
+    /// Azimuth of the camera (rad), as in [`Camera`].
+    pub azimuth: f64,
     /// Whether the framing differs between frames.
     pub moves: bool,
 }
@@ -29,8 +31,8 @@ pub(crate) struct Framing {
 impl Framing {
     /// The framing of a camera that stands still.
     pub(crate) fn still(camera: &Camera) -> Self {
-        let Camera { target, distance, .. } = *camera;
-        Self { target, distance, moves: false }
+        let Camera { target, distance, azimuth, .. } = *camera;
+        Self { target, distance, azimuth, moves: false }
     }
 }
 
@@ -67,7 +69,7 @@ impl Lens {
         let middle = (panel[3] + (above - below) * unit) / 2.0 + LOWERED * room;
         let centre = [panel[0] + panel[2] / 2.0, panel[1] + middle];
         let (azimuth, elevation) = match dimension {
-            Dimension::Space => (camera.azimuth, camera.elevation),
+            Dimension::Space => (framing.azimuth, camera.elevation),
             Dimension::Plane => (0.0, 0.0),
         };
         let [right, up, towards] = axes(azimuth, elevation);
@@ -145,6 +147,7 @@ mod tests {
                 target: DVec3::new(0.0, 0.15, 0.0),
                 distance: 2.55,
                 follow: false,
+                turns: false,
             },
             columns: Some(2),
             side: 0.1,

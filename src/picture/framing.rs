@@ -5,7 +5,7 @@
 
 use super::camera::{Framing, Lens};
 use super::layout::{Rectangle, Scale};
-use crate::look::{CameraBoxes, axes};
+use crate::look::{CameraBoxes, axes, azimuths};
 use crate::scene::{Run, Scene};
 use crate::sim::{Obstacle, Shape};
 use glam::{DVec2, DVec3};
@@ -47,6 +47,8 @@ impl SeenMoment<'_> {
 pub(super) struct Seen {
     /// Whether the camera follows the centre of mass.
     follows: bool,
+    /// The azimuth of the camera (rad).
+    azimuth: f64,
     /// The camera's axes: to the right, up and towards it.
     axes: [DVec3; 3],
     bodies: [DVec3; 2],
@@ -66,29 +68,40 @@ pub(super) struct Shot {
     pub(super) offset: DVec3,
     /// Pixels per metre at the target.
     pub(super) pixels: f64,
+    /// The azimuth of the camera (rad).
+    pub(super) azimuth: f64,
 }
 
 impl Seen {
-    /// The boxes of moments of a scene; `None` without moments.
-    pub(super) fn new(scene: &Scene, moments: &[SeenMoment<'_>], follows: bool) -> Option<Self> {
-        let view = &scene.view;
-        let usual = usual(scene)?;
+    /// The boxes of moments of a scene, from an azimuth by its place among those of the camera; `None` without moments.
+    pub(super) fn new(scene: &Scene, azimuth: usize, moments: &[SeenMoment<'_>], follows: bool) -> Option<Self> {
+        let camera = &scene.view.camera;
+        let usual = usual(scene, azimuth)?;
         let largest = |sizes: &[f64]| sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let sound = || moments.iter().filter(|moment| moment.is_sound);
         // The greatest size of each body of the scene.
         let mut most = vec![None; usual.len()];
         for SeenMoment { run, seen, .. } in sound() {
             for (&of, body) in scene.runs[*run].of.iter().zip(&seen.bodies) {
-                most[of] = Some(most[of].map_or(body.size(), |most: f64| most.max(body.size())));
+                most[of] = Some(most[of].map_or(body.size(azimuth), |most: f64| most.max(body.size(azimuth))));
             }
         }
         let limited =
             |(most, &usual): (&Option<f64>, &f64)| most.unwrap_or(f64::INFINITY).clamp(usual, MOST_GROWTH * usual);
         let most: Vec<f64> = most.iter().zip(&usual).map(limited).collect();
         let farthest = sound().map(SeenMoment::spread).reduce(f64::max).unwrap_or(f64::INFINITY);
-        let axes = axes(view.camera.azimuth, view.camera.elevation);
+        let chosen = azimuths(camera).nth(azimuth).unwrap_or(camera.azimuth);
+        let axes = axes(chosen, camera.elevation);
         let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let mut all = Self { follows, axes, bodies: none, all: none, apart: none, widest: 0.2 * largest(&usual) };
+        let mut all = Self {
+            follows,
+            azimuth: chosen,
+            axes,
+            bodies: none,
+            all: none,
+            apart: none,
+            widest: 0.2 * largest(&usual),
+        };
         for (at, moment) in moments.iter().enumerate() {
             let run = &scene.runs[moment.run];
             let CameraBoxes { centre: of_all, bodies } = &*moment.seen;
@@ -96,7 +109,7 @@ impl Seen {
             let of_bodies = run.of.iter().zip(bodies).map(|(&of, body)| {
                 let away = nearer * all.along(body.centre - of_all);
                 all.apart = union(all.apart, [away; 2]);
-                body.corners.map(|corner| away + (most[of] / body.size()).min(1.0) * corner)
+                body.corners(azimuth).map(|corner| away + (most[of] / body.size(azimuth)).min(1.0) * corner)
             });
             let Some(corners) = of_bodies.reduce(union) else { continue };
             let centre = all.along(*of_all);
@@ -116,6 +129,11 @@ impl Seen {
         }
         all.all = union(all.all, all.bodies);
         (!moments.is_empty()).then_some(all)
+    }
+
+    /// The azimuth of the camera (rad).
+    pub(super) fn azimuth(&self) -> f64 {
+        self.azimuth
     }
 
     /// The larger of the width and the height that bodies need (m).
@@ -198,25 +216,32 @@ pub(super) fn shots(all: &[Seen], lens: &Lens, room: [f64; 4], filled: f64) -> V
     let least = |scale: &dyn Fn(&Seen) -> f64| all.iter().map(scale).fold(f64::INFINITY, f64::min);
     let most = least(&|seen| fit(seen, seen.bodies).min(filled * room[2] / seen.widest));
     let pixels = least(&|seen| fit(seen, seen.all)).clamp(SMALLER * most, most);
-    all.iter().map(|seen| Shot { follows: seen.follows, offset: seen.target(lens, room, pixels), pixels }).collect()
+    all.iter()
+        .map(|seen| Shot {
+            follows: seen.follows,
+            offset: seen.target(lens, room, pixels),
+            pixels,
+            azimuth: seen.azimuth,
+        })
+        .collect()
 }
 
 /// The greatest side of each body of a scene at rest and at the start (m); `None` without a place of one of them.
-fn usual(scene: &Scene) -> Option<Vec<f64>> {
+fn usual(scene: &Scene, azimuth: usize) -> Option<Vec<f64>> {
     let mut usual = vec![f64::MIN_POSITIVE; scene.bodies.len()];
     for run in scene.distinct_bodies().0 {
         let Run { of, bodies, initial, .. } = &scene.runs[run];
         let start = CameraBoxes::new(&scene.view, bodies, &initial.position)?;
         for ((&of, body), seen) in of.iter().zip(bodies.bodies()).zip(&start.bodies) {
-            usual[of] = usual[of].max(seen.size()).max(body.extent());
+            usual[of] = usual[of].max(seen.size(azimuth)).max(body.extent());
         }
     }
     Some(usual)
 }
 
-/// The camera of a panel at a distance of a metre.
+/// The camera of a panel at a distance of a metre; its azimuth is of no interest.
 pub(super) fn from_a_metre(scene: &Scene, viewport: Rectangle, scale: Scale) -> Lens {
-    let framing = Framing { target: DVec3::ZERO, distance: 1.0, moves: false };
+    let framing = Framing { target: DVec3::ZERO, distance: 1.0, ..Framing::still(&scene.view.camera) };
     Lens::new(&scene.view, &framing, scene.dimension(), viewport.map(f64::from), scale.unit)
 }
 

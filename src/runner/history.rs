@@ -2,7 +2,7 @@
 //! that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the requested
 //! frames.
 
-use crate::look::CameraBoxes;
+use crate::look::{CameraBoxes, Hidden};
 use crate::scene::{Reading, Run, Scene};
 use crate::sim::geometry;
 use crate::sim::{Diagnostics, Divergence, Moment, Reaction, Shape, World};
@@ -26,6 +26,16 @@ pub struct History {
     pub series: Vec<TimeSeries>,
 }
 
+impl History {
+    /// The place of the chosen azimuth among [those](crate::look::azimuths) of the camera. What diverges does not count.
+    pub(crate) fn azimuth(&self) -> usize {
+        let mut hidden = Hidden::default();
+        let sound = self.series.iter().filter(|series| series.divergence.is_none());
+        sound.for_each(|series| hidden.merge(&series.hidden));
+        hidden.choice()
+    }
+}
+
 /// The time series of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSeries {
@@ -46,6 +56,8 @@ pub struct TimeSeries {
     pub paths: Vec<Vec<DVec3>>,
     /// The boxes around the bodies at these times, if the scene's camera follows them.
     pub(crate) boxes: Vec<CameraBoxes>,
+    /// What obstacles hide from a camera that turns.
+    pub(crate) hidden: Hidden,
     /// The boxes around their nodes near plates and walls.
     pub(crate) reach: NearObstacles,
     /// The divergence of the run, if it diverged.
@@ -56,7 +68,8 @@ impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
         let (times, diagnostics, of_bodies, readings, paths, boxes, reach) = Default::default();
-        Self { run, times, diagnostics, of_bodies, readings, paths, boxes, reach, divergence: None }
+        let (hidden, divergence) = Default::default();
+        Self { run, times, diagnostics, of_bodies, readings, paths, boxes, hidden, reach, divergence }
     }
 
     /// Whether it has the same run and the same quantities as an empty one.
@@ -84,8 +97,14 @@ impl TimeSeries {
         self.times.push(time);
         self.diagnostics.push(all);
         self.of_bodies.iter_mut().zip(of_bodies).for_each(|(series, of_body)| series.push(of_body));
-        if scene.view.camera.follow {
+        let camera = &scene.view.camera;
+        if camera.follow {
             self.boxes.extend(CameraBoxes::new(&scene.view, &run.bodies, position));
+        }
+        if camera.turns {
+            // The start counts, too, in a scene of one moment.
+            let lasting = self.times.iter().rev().nth(1).map_or(f64::MIN_POSITIVE, |before| time - before);
+            self.hidden.add(camera, &scene.obstacles, [time, lasting], position);
         }
         self.reach.add(scene, run, time, position);
     }

@@ -428,6 +428,21 @@ fn runs_that_others_are_compared_with_cannot_be_left_out() {
     }
 }
 
+/// A wall between the body and the usual camera turns the camera by a twelfth, unless the scene names an azimuth.
+#[test]
+fn the_camera_turns_to_where_no_obstacle_hides_the_body() {
+    let Some(place) = place_to_draw() else { return };
+    let wall = "[[obstacle]]\nkind = \"box\"\ncentre = [0.3, 0.1, 0.5]\nsize = [0.3, 2.0, 0.02]\nrotation = [0.0, 0.541, 0.0]\n";
+    let azimuth = |scene: &str| {
+        place.write("wall.toml", scene);
+        place.run("render wall.toml --overwrite --size 480x320 --frames 0").good();
+        place.json("output/wall/run.json")["frames"]["azimuth"].as_f64().expect("an azimuth").to_degrees().round()
+    };
+    assert_eq!(azimuth(SMALL), 31.0);
+    assert_eq!(azimuth(&(SMALL.to_owned() + wall)), 61.0);
+    assert_eq!(azimuth(&(SMALL.replace("[view]", "[view]\ncamera.azimuth = 0.0") + wall)), 0.0);
+}
+
 /// A body that is held, with a camera that stands still, is drawn once if no clock runs.
 #[test]
 fn frames_of_the_same_states_are_drawn_once() {

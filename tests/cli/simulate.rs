@@ -373,7 +373,7 @@ fn everything_in_the_files_is_documented() {
     run["runs"][0]["rest"] = serde_json::json!({ "residual": 1e-10, "evaluations": 100 });
     run["runs"][0]["comes_to_rest"] = serde_json::json!({ "frame": 3, "kinetic_energy": 0.1, "residual": 1e-4 });
     run["runs"][0]["unsolved"] = serde_json::json!({ "steps": 1, "first": 0.5, "residual": 0.1 });
-    run["frames"]["repeated"] = 1.into();
+    (run["frames"]["repeated"], run["frames"]["azimuth"]) = (1.into(), 0.5.into());
     (run["frames"]["kept"], run["set"]) = (1.into(), serde_json::json!(["time.duration=5"]));
     let of_bodies = place.json("output/bodies/run.json");
     let [mut found, mut told] = [[ways(&run, ""), ways(&of_bodies, "")].concat(), documented("run.json")];

@@ -68,11 +68,11 @@ impl Composer<'_> {
         // Panels may differ by a pixel in width, but have one scale.
         let distance = framing::from_a_metre(self.scene, viewport, scale).focal / shot.pixels;
         if !shot.follows {
-            return Framing { target: shot.offset, distance, moves: false };
+            return Framing { target: shot.offset, distance, azimuth: shot.azimuth, moves: false };
         }
         let centre = (position.len() == body.len()).then(|| Traced::Centre.of(body, position));
         let centre = centre.filter(|centre| centre.is_finite()).unwrap_or(view.camera.target);
-        Framing { target: centre + shot.offset, distance, moves: true }
+        Framing { target: centre + shot.offset, distance, azimuth: shot.azimuth, moves: true }
     }
 }
 
@@ -84,6 +84,7 @@ pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
         return None;
     }
     let (distinct, _) = scene.distinct_bodies();
+    let azimuth = history.azimuth();
     let start = |run: usize| {
         let Run { bodies, initial, .. } = &scene.runs[run];
         let seen = Cow::Owned(CameraBoxes::new(&scene.view, bodies, &initial.position)?);
@@ -95,13 +96,13 @@ pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
         boxes.map(move |(&time, seen)| SeenMoment { time, run, seen: Cow::Borrowed(seen), is_sound })
     });
     let mut moments: Vec<_> = distinct.into_iter().filter_map(start).chain(courses).collect();
-    let following = Seen::new(scene, &moments, true)?;
+    let following = Seen::new(scene, azimuth, &moments, true)?;
     if !holds_nodes(scene) {
         return Some(following);
     }
     // Where a run that diverges goes is of no interest.
     moments.retain(|moment| moment.is_sound);
-    let still = Seen::new(scene, &moments, false);
+    let still = Seen::new(scene, azimuth, &moments, false);
     still.filter(|still| still.size() <= MOST_SPACE * following.size()).or(Some(following))
 }
 

@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::draft::Draft;
-use crate::look::{CameraBox, CameraBoxes, FloorStyle, axes};
+use crate::look::{CameraBox, CameraBoxes, FloorStyle, axes, azimuths};
 use crate::picture::Floor;
 use crate::picture::compose::obstacle::Staged;
 use crate::picture::layout;
@@ -36,7 +36,9 @@ const SHEER: f64 = 0.38;
 /// The greatest distance (m) on the ground of the shadow of a body from the middle of all, in a course before a camera that follows them; `None`
 /// without a course.
 pub(super) fn shadow_way(scene: &Scene, history: &History) -> Option<f64> {
-    let key = key_light(axes(scene.view.camera.azimuth, scene.view.camera.elevation)[0]);
+    let camera = &scene.view.camera;
+    let azimuth = azimuths(camera).nth(history.azimuth()).unwrap_or(camera.azimuth);
+    let key = key_light(axes(azimuth, camera.elevation)[0]);
     let way = |(&time, seen): (&f64, &CameraBoxes)| {
         let (normal, height) = geometry::ground(&scene.obstacles, time)?;
         let plane = Plane::new(normal, height - normal.dot(seen.centre));

@@ -38,8 +38,8 @@ use crate::look::{BODIES, Palette};
 use crate::runner::Frame;
 use crate::runner::history::{History, NearObstacles, TimeSeries};
 use crate::scene::{Run, Scene};
-use crate::sim::Status;
 use crate::sim::geometry::bounds;
+use crate::sim::{Dimension, Status};
 use bodies::Bodies;
 use draft::Draft;
 pub(crate) use figure::compose_figure;
@@ -135,6 +135,12 @@ impl<'a> Composer<'a> {
         };
         composer.timeline = composer.charts(history);
         composer
+    }
+
+    /// The azimuth of the camera (rad); `None` in the plane.
+    pub(crate) fn azimuth(&self) -> Option<f64> {
+        let azimuth = self.seen.as_ref().map_or(self.scene.view.camera.azimuth, Seen::azimuth);
+        (self.scene.dimension() == Dimension::Space).then_some(azimuth)
     }
 
     /// The charts below the panels, if the scene has any and its time series are known.

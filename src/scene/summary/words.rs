@@ -76,7 +76,8 @@ impl Scene {
                 let [across, up] = [view.camera.azimuth, view.camera.elevation].map(|angle| angle.to_degrees().round());
                 let side = if across < 0.0 { "left" } else { "right" };
                 let height = if up < 0.0 { "down" } else { "up" };
-                format!("from {}° {side} and {}° {height}", across.abs(), up.abs())
+                let turned = if view.camera.turns { " or from where obstacles hide less" } else { "" };
+                format!("from {}° {side} and {}° {height}{turned}", across.abs(), up.abs())
             }
         };
         let theme = typed(&view.look.theme);

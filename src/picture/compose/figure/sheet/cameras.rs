@@ -35,7 +35,7 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
             Some(SeenMoment { time: shown.time, run: run.run, seen: Cow::Owned(seen), is_sound })
         };
         let of_runs: Vec<_> = moments.cells.iter().filter_map(|row| moment(&row[column])).collect();
-        let Some(seen) = Seen::new(scene(column), &of_runs, false) else { continue };
+        let Some(seen) = Seen::new(scene(column), 0, &of_runs, false) else { continue };
         match kinds.iter_mut().find(|kind| are_alike([kind[0].0, column].map(scene))) {
             Some(kind) => kind.push((column, seen)),
             None => kinds.push(vec![(column, seen)]),
@@ -50,7 +50,12 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
             Seen::level(&mut of_columns);
         }
         for ((column, _), shot) in kind.iter().zip(framing::shots(&of_columns, &lens, room, 1.0)) {
-            framings[*column] = Framing { target: shot.offset, distance: lens.focal / shot.pixels, moves: false };
+            framings[*column] = Framing {
+                target: shot.offset,
+                distance: lens.focal / shot.pixels,
+                azimuth: shot.azimuth,
+                moves: false,
+            };
         }
     }
     framings
