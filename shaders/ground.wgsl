@@ -4,14 +4,13 @@ struct Ground {
     // Unit vectors along the grid. w is added to coordinates so that lines of the grid are at whole cells.
     first: vec4<f32>,
     second: vec4<f32>,
-    // Coordinates of the middle; start and end of the fade.
-    middle: vec2<f32>,
+    // Start and end of the fade; the heights below the upper and above the lower side of the panel over which the floor fades (px).
     fade: vec2<f32>,
+    fade_at_words: vec2<f32>,
     // For key light and sky: corner, inverse length and opacity of the shadow.
     key: vec4<f32>,
     sky: vec4<f32>,
-    // Linear colours. w has the layers of the two shadows, the distance of the grid's lines, and the height over which
-    // the floor fades above the lower side of the panel (px).
+    // Linear colours. w has the layers of the two shadows and the distance of the grid's lines.
     background: vec4<f32>,
     floor: vec4<f32>,
     grid: vec4<f32>,
@@ -30,7 +29,7 @@ struct Corner {
     @builtin(position) place: vec4<f32>,
     @location(0) on_floor: vec2<f32>,
     @location(1) @interpolate(flat) viewport: vec4<f32>,
-    @location(2) @interpolate(flat) middle_and_fade: vec4<f32>,
+    @location(2) @interpolate(flat) fades: vec4<f32>,
     @location(3) @interpolate(flat) background: vec4<f32>,
     @location(4) @interpolate(flat) floor: vec4<f32>,
     @location(5) @interpolate(flat) grid: vec4<f32>,
@@ -42,8 +41,8 @@ struct Corner {
 
 fn unpack(corner: Corner) {
     ground.viewport = corner.viewport;
-    ground.middle = corner.middle_and_fade.xy;
-    ground.fade = corner.middle_and_fade.zw;
+    ground.fade = corner.fades.xy;
+    ground.fade_at_words = corner.fades.zw;
     ground.background = corner.background;
     ground.floor = corner.floor;
     ground.grid = corner.grid;
@@ -64,13 +63,13 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
     panel = panel_data;
     ground = ground_data;
     let sign = vec2(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
-    let on_floor = ground.middle + sign * ground.fade.y;
+    let on_floor = sign * ground.fade.y;
     let position = panel.up * panel.floor + ground.first.xyz * on_floor.x + ground.second.xyz * on_floor.y;
     return Corner(
         panel.clip * vec4(position, 1.0),
         on_floor,
         ground.viewport,
-        vec4(ground.middle, ground.fade),
+        vec4(ground.fade, ground.fade_at_words),
         ground.background,
         ground.floor,
         ground.grid,
@@ -96,28 +95,35 @@ fn byte_step(light: f32) -> f32 {
     return sqrt(light) * (1.2 + 0.7 * light) / 255.0;
 }
 
+// A loop without rounds ends at once, where a software driver would read both sides of an `if` for each pixel.
 fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
     let at = (on_floor - shade.xy) * shade.z;
-    let inside = all(at >= vec2(0.0)) && all(at <= vec2(1.0));
+    let is_inside = shade.w > 0.0 && all(at >= vec2(0.0)) && all(at <= vec2(1.0));
     let cells = f32(textureDimensions(shades).x - 1u);
     let place = saturate(at) * cells + 0.5;
     let corner = floor(place);
     let beyond = place - corner;
-    let four = textureLoad(shades, vec2<i32>(corner), i32(layer), 0);
-    let rows = mix(four.xz, four.yw, beyond.x);
-    return select(0.0, shade.w * mix(rows.x, rows.y, beyond.y), inside);
+    var taken = 0.0;
+    for (var round = select(1, 0, is_inside); round < 1; round++) {
+        let four = textureLoad(shades, vec2<i32>(corner), i32(layer), 0);
+        let rows = mix(four.xz, four.yw, beyond.x);
+        taken = shade.w * mix(rows.x, rows.y, beyond.y);
+    }
+    return taken;
 }
 
-// The colour of the floor where the body leaves this much of its light.
-fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
+@fragment
+fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
+    unpack(corner);
     let at = corner.on_floor;
+    let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
     let pixel = corner.place.xy - ground.viewport.xy;
     let size = ground.viewport.zw;
-    let radius = length(at - ground.middle);
+    let radius = length(at);
     let round = 1.0 - smoothstep(ground.fade.x, ground.fade.y, radius);
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
-    let bottom = smoothstep(0.55 * ground.shadow.w, ground.shadow.w, size.y - pixel.y);
-    let fade = round * side * bottom;
+    let words = smoothstep(0.55 * ground.fade_at_words, ground.fade_at_words, vec2(pixel.y, size.y - pixel.y));
+    let fade = round * side * words.x * words.y;
     let cells = (at + vec2(ground.first.w, ground.second.w)) / ground.grid.w;
     let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
     let width = max(across, vec2(1e-6));
@@ -131,20 +137,4 @@ fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
     let faded = mix(ground.background.rgb, colour, fade);
     // Without dithering, wide shadows show the borders of their 256 steps.
     return vec4(faded + dither(corner.place.xy) * byte_step(faded.g), 0.0);
-}
-
-@fragment
-fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
-    unpack(corner);
-    return floor_light(corner, 1.0);
-}
-
-// Reading shadows takes longer than all other work, and a software driver would do it for each pixel. So it has a
-// pipeline of its own.
-@fragment
-fn shadowed_colour(corner: Corner) -> @location(0) vec4<f32> {
-    unpack(corner);
-    let at = corner.on_floor;
-    let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
-    return floor_light(corner, left);
 }

@@ -121,14 +121,15 @@ impl Boxes {
     }
 }
 
-pub(crate) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+/// The point of a triangle that is nearest to another point (m). The triangle may be a line or a point.
+pub fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
     let on_line = |from: DVec3, to: DVec3| {
         let along = to - from;
-        from + along * (along.dot(point - from) / along.length_squared()).clamp(0.0, 1.0)
+        from + along * (along.dot(point - from) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     };
     let normal = (b - a).cross(c - a);
     let is_left = |from: DVec3, to: DVec3| normal.dot((to - from).cross(point - from)) >= 0.0;
-    if is_left(a, b) && is_left(b, c) && is_left(c, a) {
+    if normal != DVec3::ZERO && is_left(a, b) && is_left(b, c) && is_left(c, a) {
         return point - normal * (normal.dot(point - a) / normal.length_squared());
     }
     let sides = [on_line(a, b), on_line(b, c), on_line(c, a)];
@@ -141,6 +142,24 @@ pub(crate) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// No point of a triangle is nearer, and one without area has its nearest point, too.
+    #[test]
+    fn no_point_of_a_triangle_is_nearer() {
+        let triangle = [DVec3::new(0.1, 0.0, 0.2), DVec3::new(1.0, 0.3, 0.0), DVec3::new(0.2, 0.9, -0.3)];
+        let flat = [triangle[0], triangle[1], triangle[0].lerp(triangle[1], 0.5)];
+        for triangle in [triangle, flat, [triangle[0]; 3]] {
+            let [a, b, c] = triangle;
+            for at in 0..1000u32 {
+                let point = DVec3::from_array([at % 10, at / 10 % 10, at / 100].map(|n| f64::from(n) * 0.3 - 1.2));
+                let least = nearest_of(triangle, point).distance(point);
+                for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {
+                    let there = a + (b - a) * f64::from(i) / 20.0 + (c - a) * f64::from(j) / 20.0;
+                    assert!(there.distance(point) >= least - 1e-12, "{point}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_grid_has_no_more_cells_than_boxes_need() {

@@ -91,29 +91,11 @@ fn check(bytes: &[u8]) -> Result<(), String> {
 /// Why bytes that begin like a font are not a usable one.
 #[cfg(feature = "render")]
 fn letters(bytes: &[u8]) -> Result<(), String> {
-    /// Whether an outline has anything.
-    struct Outlined(bool);
-    impl ttf_parser::OutlineBuilder for Outlined {
-        fn move_to(&mut self, _: f32, _: f32) {}
-        fn line_to(&mut self, _: f32, _: f32) {
-            self.0 = true;
-        }
-        fn quad_to(&mut self, _: f32, _: f32, _: f32, _: f32) {
-            self.0 = true;
-        }
-        fn curve_to(&mut self, _: f32, _: f32, _: f32, _: f32, _: f32, _: f32) {
-            self.0 = true;
-        }
-        fn close(&mut self) {}
-    }
     let font = ttf_parser::Face::parse(bytes, 0)
         .map_err(|_| format!("begins like a font but is damaged or cut short; {EXPECTED}"))?;
-    let drawn = |character: &char| {
-        let mut outline = Outlined(false);
-        font.glyph_index(*character).is_some_and(|glyph| font.outline_glyph(glyph, &mut outline).is_some()) && outline.0
-    };
+    let outline = |character: &char| font.glyph_bounding_box(font.glyph_index(*character)?);
     let needed = ('0'..='9').chain('A'..='Z').chain('a'..='z');
-    let missing: Vec<char> = needed.filter(|character| !drawn(character)).collect();
+    let missing: Vec<char> = needed.filter(|character| outline(character).is_none()).collect();
     match missing[..] {
         [] => Ok(()),
         [first, ..] => Err(format!(

@@ -245,16 +245,14 @@ pub(crate) struct Floor {
     pub axes: [Vec3; 2],
     /// Its place along the normal.
     pub height: f32,
-    /// Coordinates along the axes of the point around which the floor is drawn.
-    pub middle: [f32; 2],
     /// Distance of the grid's lines.
     pub cell: f32,
     /// The shift of coordinates by which the grid's lines come to whole cells.
     pub grid: [f32; 2],
-    /// The distances from the middle at which it begins and ends to fade.
+    /// The distances from the origin of its axes at which it begins and ends to fade.
     pub fade: [f32; 2],
-    /// The height above the lower side of the viewport over which it fades (px).
-    pub fade_above: f32,
+    /// The heights below the upper side and above the lower side of the viewport over which it fades (px).
+    pub fade_at_words: [f32; 2],
     /// Whether it has a colour of its own, besides shadows and grid.
     pub is_filled: bool,
     /// Whether its grid is drawn.

@@ -241,9 +241,9 @@ impl<'a> Casters<'a> {
         self.triangles.to_mut().extend(triangles.iter().map(|triangle| triangle.map(|at| point + at)));
     }
 
-    /// Their shadows in key light and in the light of the sky on a plane, within `reach` of `middle` on it, with `soft`
+    /// Their shadows in key light and in the light of the sky on a plane, within `reach` of the origin of its axes, with `soft`
     /// as unit of blur.
-    pub(super) fn shades(&self, plane: &Plane, key: DVec3, middle: DVec2, reach: f64, soft: f64) -> [Shade; 2] {
+    pub(super) fn shades(&self, plane: &Plane, key: DVec3, reach: f64, soft: f64) -> [Shade; 2] {
         let Self { points, triangles, edges, count } = self;
         let blur = BLUR.map(|blur| blur * soft);
         let feet: Vec<_> = points.iter().map(|&point| plane.foot(point)).collect();
@@ -284,9 +284,9 @@ impl<'a> Casters<'a> {
             Shade { corner: [narrow(low.x), narrow(low.y)], length: narrow(length), cells }
         };
         // The key light's shadow has sharp ends, so its grid just contains the shadow.
-        let (low, high) = bounds(&feet, &key_directions, plane, middle, reach);
+        let (low, high) = bounds(&feet, &key_directions, plane, reach);
         let [key_low, key_length] = snapped(low, (high - low).max_element() + 6.0 * blur[0]);
-        let (sky_low, sky_length) = (middle - reach, 2.0 * reach);
+        let (sky_low, sky_length) = (DVec2::splat(-reach), 2.0 * reach);
         [
             shade(&key_directions, blur[0], DVec2::new(key_low[0], key_low[1]), key_length[0]),
             shade(&sky_directions, blur[1], sky_low, sky_length),
@@ -295,7 +295,7 @@ impl<'a> Casters<'a> {
 }
 
 /// The box around all shadows, within reach.
-fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, middle: DVec2, reach: f64) -> (DVec2, DVec2) {
+fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, reach: f64) -> (DVec2, DVec2) {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     // The last directions are the outermost.
     for &direction in directions.iter().rev().take(12) {
@@ -304,7 +304,7 @@ fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, middle: DVec2, rea
             (low, high) = (low.min(at), high.max(at));
         }
     }
-    let within = |corner: DVec2| corner.clamp(middle - reach, middle + reach);
+    let within = |corner: DVec2| corner.clamp(DVec2::splat(-reach), DVec2::splat(reach));
     (within(low), within(high))
 }
 

@@ -1,11 +1,11 @@
 //! The floor with its grid and the soft shadows on it.
 
 use super::panel::{Panels, linear};
-use super::pipeline::{Recipe, bind, element, group_layout, shader, texture, textures_entry, uniform_entry};
+use super::pipeline::{Recipe, bind, element, group_layout, shader, texture, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{CELLS, Floor, Panel, Picture, Rectangle, Shade};
 use bytemuck::{Pod, Zeroable};
-use glam::{UVec2, Vec2, Vec4};
+use glam::Vec4;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/ground.wgsl");
 
@@ -15,8 +15,8 @@ pub(super) const SHADER: &str = include_str!("../../shaders/ground.wgsl");
 pub(super) struct GroundUniform {
     pub(super) first: Vec4,
     pub(super) second: Vec4,
-    pub(super) middle: [f32; 2],
     pub(super) fade: [f32; 2],
+    pub(super) fade_at_words: [f32; 2],
     pub(super) key: Vec4,
     pub(super) sky: Vec4,
     pub(super) background: Vec4,
@@ -34,8 +34,7 @@ const MOST_PANELS: usize = 128;
 /// The pipeline of the floor and the floors of one picture.
 #[derive(Debug)]
 pub(super) struct Grounds {
-    /// The pipelines without shadows and with them.
-    pipelines: [wgpu::RenderPipeline; 2],
+    pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     uniforms: GrowingBuffer,
     shades: wgpu::Texture,
@@ -45,21 +44,19 @@ pub(super) struct Grounds {
 impl Grounds {
     pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
         let module = shader(gpu, "ground", &[super::PANEL_SHADER, SHADER]);
-        let shades = textures_entry(1, wgpu::TextureSampleType::Float { filterable: false });
+        let shades =
+            texture_entry(1, wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2Array);
         let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), shades];
         let layout = group_layout(gpu, "ground", &entries);
-        let build = |fragment| {
-            let recipe = Recipe {
-                groups: &[&panels.layout, &layout],
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                // Infinitely far away: a driver leaves out what bodies cover.
-                depth: Some((wgpu::CompareFunction::Equal, false)),
-                ..Recipe::new(fragment, &module, ["corner", fragment])
-            };
-            recipe.build(gpu)
+        let recipe = Recipe {
+            groups: &[&panels.layout, &layout],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            // Infinitely far away: a driver leaves out what bodies cover.
+            depth: Some((wgpu::CompareFunction::Equal, false)),
+            ..Recipe::new("ground", &module, ["corner", "floor_colour"])
         };
         Self {
-            pipelines: ["floor_colour", "shadowed_colour"].map(build),
+            pipeline: recipe.build(gpu),
             layout,
             uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
             shades: create_shades(gpu, 2),
@@ -118,58 +115,19 @@ impl Grounds {
             let [left, top, width, height] = panel.viewport.map(|length| length as f32);
             pass.set_viewport(left, top, width, height, 0.0, 0.0);
             pass.set_bind_group(1, self.bind_group.as_ref(), &[(at * STRIDE) as u32]);
-            let shadowed = if has_layer(at) { shadowed(panel, floor) } else { None };
-            let lit = shadowed.map_or(vec![visible(panel, floor)], |inner| around(visible(panel, floor), inner));
-            for (pipeline, parts) in self.pipelines.iter().zip([lit, shadowed.into_iter().collect()]) {
-                pass.set_pipeline(pipeline);
-                for [left, top, width, height] in parts {
-                    pass.set_scissor_rect(left, top, width, height);
-                    pass.draw(0..4, 0..1);
-                }
-            }
+            pass.set_pipeline(&self.pipeline);
+            let [left, top, width, height] = visible(panel, floor);
+            pass.set_scissor_rect(left, top, width, height);
+            pass.draw(0..4, 0..1);
         }
     }
 }
 
-/// The part of a panel above the lower side at which the floor has faded out.
+/// The part of a panel between the words, at which the floor has faded out.
 fn visible(panel: &Panel, floor: &Floor) -> Rectangle {
     let [left, top, width, height] = panel.viewport;
-    [left, top, width, height.saturating_sub((0.55 * floor.fade_above) as u32)]
-}
-
-/// The part of that in which shadows may lie.
-fn shadowed(panel: &Panel, floor: &Floor) -> Option<Rectangle> {
-    let [left, top, width, height] = panel.viewport;
-    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    for shade in floor.shades.iter().filter(|shade| !shade.cells.is_empty()) {
-        for corner in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
-            let on_floor = Vec2::from(shade.corner) + shade.length * Vec2::from(corner);
-            let point = floor.normal * floor.height + floor.axes[0] * on_floor.x + floor.axes[1] * on_floor.y;
-            let at = panel.sight.clip * point.extend(1.0);
-            if at.w < panel.sight.near {
-                // The corner lies behind the eye.
-                return Some(visible(panel, floor));
-            }
-            let pixel = (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * Vec2::new(width as f32, height as f32);
-            (low, high) = (low.min(pixel), high.max(pixel));
-        }
-    }
-    let most = UVec2::from_slice(&visible(panel, floor)[2..]);
-    let [low, high] = [(low - 1.0).floor(), (high + 1.0).ceil()].map(|at| at.max(Vec2::ZERO).as_uvec2().min(most));
-    let size = high.saturating_sub(low);
-    (size.min_element() > 0).then_some([left + low.x, top + low.y, size.x, size.y])
-}
-
-/// The parts of a rectangle around another one in it.
-fn around([left, top, width, height]: Rectangle, [x, y, wide, high]: Rectangle) -> Vec<Rectangle> {
-    let [right, bottom] = [left + width - x - wide, top + height - y - high];
-    let parts = [
-        [left, top, width, y - top],
-        [left, y, x - left, high],
-        [x + wide, y, right, high],
-        [left, y + high, width, bottom],
-    ];
-    parts.into_iter().filter(|&[_, _, width, height]| width > 0 && height > 0).collect()
+    let [above, below] = floor.fade_at_words.map(|height| (0.55 * height) as u32);
+    [left, top + above.min(height), width, height.saturating_sub(above + below)]
 }
 
 fn has_layer(panel: usize) -> bool {
@@ -188,14 +146,14 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
     GroundUniform {
         first: floor.axes[0].extend(floor.grid[0]),
         second: floor.axes[1].extend(floor.grid[1]),
-        middle: floor.middle,
         fade: floor.fade,
+        fade_at_words: floor.fade_at_words,
         key: shade(0),
         sky: shade(1),
         background: linear(palette.background).extend((2 * at) as f32),
         floor: linear(filling).extend((2 * at + 1) as f32),
         grid: linear(grid).extend(floor.cell),
-        shadow: linear(palette.shadow).extend(floor.fade_above),
+        shadow: linear(palette.shadow).extend(0.0),
         viewport: Vec4::from_array(panel.viewport.map(|length| length as f32)),
     }
 }
@@ -240,19 +198,5 @@ mod tests {
         let [last, before] = [at(9, CELLS - 1), at(8, CELLS - 1)].map(|at| cells[at]);
         assert_eq!(corners[corner(9, CELLS)], [before, before, last, last]);
         assert_eq!(corners.len(), (CELLS + 1) * (CELLS + 1));
-    }
-
-    #[test]
-    fn the_parts_around_a_rectangle_and_itself_cover_each_pixel_once() {
-        let outer = [3, 5, 7, 6];
-        for inner in [[3, 5, 7, 6], [3, 5, 1, 1], [9, 10, 1, 1], [5, 7, 2, 3], [3, 6, 7, 1]] {
-            let parts = [around(outer, inner), vec![inner]].concat();
-            for (x, y) in (3..10).flat_map(|x| (5..11).map(move |y| (x, y))) {
-                let holds = |[left, top, width, height]: &&Rectangle| {
-                    (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
-                };
-                assert_eq!(parts.iter().filter(holds).count(), 1, "{inner:?} {x} {y}");
-            }
-        }
     }
 }

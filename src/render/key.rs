@@ -8,8 +8,6 @@ use crate::gpu::Gpu;
 use crate::picture::Picture;
 use wgpu::TextureUsages as Usage;
 
-pub(super) const SHADER: &str = include_str!("../../shaders/key.wgsl");
-
 /// The maps of one picture.
 #[derive(Debug)]
 pub(super) struct KeyMaps {
@@ -33,7 +31,7 @@ impl KeyMaps {
             return false;
         }
         self.pipeline.get_or_insert_with(|| {
-            let module = shader(gpu, "key light", &[super::PANEL_SHADER, SHADER]);
+            let module = shader(gpu, "key light", &[super::PANEL_SHADER, super::KEY_SHADER]);
             let position = &wgpu::vertex_attr_array![0 => Float32x3];
             let vertices = &[Some(for_vertices::<Corner>(position))];
             let recipe = Recipe::new("key light", &module, ["caster_corner", ""]);

@@ -12,8 +12,9 @@
 use super::key::KeyMaps;
 use super::pane::Panes;
 use super::panel::{self, Panels};
+use super::pipeline::PICTURE_FORMAT;
 use super::surface::{Set, Surfaces};
-use super::target::{Behind, FAR, Layouts, Solids, Targets, begin};
+use super::target::{Behind, Drawn, FAR, Layouts, Target, begin};
 use super::{RenderError, border, ground, line};
 use crate::gpu::{Gpu, Pending, ReadBack};
 use crate::picture::{Item, Picture};
@@ -29,11 +30,12 @@ pub(super) struct Lit {
     key_maps: KeyMaps,
     surfaces: Surfaces,
     grounds: ground::Grounds,
-    targets: Targets,
+    picture: Target,
+    drawn: Drawn,
     /// Made when first needed.
     panes: Option<Panes>,
     behind: Option<Behind>,
-    solids: Option<Solids>,
+    solids: Option<Drawn>,
     read_back: ReadBack,
 }
 
@@ -54,7 +56,8 @@ impl Lit {
             key_maps: KeyMaps::new(gpu),
             surfaces: Surfaces::new(gpu),
             grounds: ground::Grounds::new(gpu, &panels),
-            targets: Targets::new(gpu, &layouts, size),
+            picture: Target::new(gpu, "picture", size, PICTURE_FORMAT),
+            drawn: Drawn::new(gpu, &layouts, size),
             panes: None,
             behind: None,
             solids: None,
@@ -74,7 +77,7 @@ impl Lit {
             self.behind = Some(Behind::new(gpu, layouts, *size));
         }
         if self.solids.is_none() && picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty()) {
-            self.solids = Some(Solids::new(gpu, layouts, *size));
+            self.solids = Some(Drawn::new(gpu, layouts, *size));
         }
         let are_new = self.key_maps.write(gpu, &self.panels, picture);
         self.panels.write(gpu, picture, &self.key_maps.view, are_new);
@@ -90,7 +93,7 @@ impl Lit {
         self.key_maps.draw(&mut commands, &self.panels, &self.surfaces, picture);
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
         let (mut ground, mut far) = (LoadOp::Clear(wgpu::Color { r, g, b, a: 0.0 }), FAR);
-        let Targets { picture: drawn, depth, .. } = &self.targets;
+        let (drawn, depth) = (&self.picture, &self.drawn.depth);
         if let Some(Behind { colour, depth: alone, .. }) = &self.behind {
             // One drawing serves both uses: the other surfaces are drawn over it.
             let targets = [(colour, LoadOp::Clear(wgpu::Color::TRANSPARENT)), (drawn, ground)];
@@ -109,14 +112,14 @@ impl Lit {
             self.surfaces.draw(&mut pass, &self.panels, picture, Set::Sound);
             self.grounds.draw(&mut pass, &self.panels, picture);
         }
-        let mut before = &self.targets.drawn;
+        let mut before = &self.drawn.group;
         if let Some(solids) = &self.solids {
             let [from, to] = [depth, &solids.depth].map(|target| target.texture.as_image_copy());
             commands.copy_texture_to_texture(from, to, depth.texture.size());
             let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], Some((&solids.depth.view, LoadOp::Load)));
             pass.set_bind_group(1, before, &[]);
             self.surfaces.draw(&mut pass, &self.panels, picture, Set::Obstacles);
-            before = &solids.drawn;
+            before = &solids.group;
         }
         if let Some(panes) = panes {
             let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], None);

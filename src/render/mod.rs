@@ -21,6 +21,7 @@ use image::RgbImage;
 use lit::Lit;
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
+const KEY_SHADER: &str = include_str!("../../shaders/key.wgsl");
 
 /// A reason why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -63,14 +64,8 @@ pub struct Renderer {
     lit: Option<Lit>,
 }
 
-/// A picture that is being drawn.
-#[derive(Debug)]
-pub(crate) enum Pending {
-    /// It has none.
-    Flat,
-    /// Its lit bodies.
-    Lit(crate::gpu::Pending),
-}
+/// The lit bodies of a picture that is being drawn, if it has any.
+pub(crate) type Pending = Option<crate::gpu::Pending>;
 
 impl Renderer {
     /// Prepares to draw pictures of a width and height (px). Lit bodies need a device.
@@ -111,7 +106,7 @@ impl Renderer {
                 self.lit = Some(Lit::new(gpu, self.size)?);
             }
             let lit = self.lit.as_mut().expect("made above");
-            Pending::Lit(if picture.panels.iter().all(is_lit) {
+            Some(if picture.panels.iter().all(is_lit) {
                 lit.submit(picture)
             } else {
                 let mut bodies = picture.clone();
@@ -119,7 +114,7 @@ impl Renderer {
                 lit.submit(&bodies)
             })
         } else {
-            Pending::Flat
+            None
         };
         Ok(pending)
     }
@@ -131,15 +126,13 @@ impl Renderer {
     pub(crate) fn collect(&mut self, pending: Pending, picture: &Picture) -> Result<Vec<u8>, RenderError> {
         self.pixels.clear();
         let lines = match pending {
-            Pending::Flat => {
+            None => {
                 let [red, green, blue] = picture.palette.background;
                 let count = self.size.iter().product::<u32>() as usize;
                 self.pixels.extend(std::iter::repeat_n([red, green, blue, u8::MAX], count).flatten());
                 Vec::new()
             }
-            Pending::Lit(pending) => {
-                self.lit.as_ref().expect("it is drawing").collect(pending, picture, &mut self.pixels)?
-            }
+            Some(pending) => self.lit.as_ref().expect("it is drawing").collect(pending, picture, &mut self.pixels)?,
         };
         vector::paint(&mut self.painter, picture, &lines, &mut self.pixels);
         Ok(without_opacity(&self.pixels))

@@ -13,7 +13,7 @@ const SHADER: &str = include_str!("../../shaders/pane.wgsl");
 
 /// The parts of the shader.
 pub(super) fn parts() -> [&'static str; 3] {
-    [super::PANEL_SHADER, super::key::SHADER, SHADER]
+    [super::PANEL_SHADER, super::KEY_SHADER, SHADER]
 }
 
 /// A corner of a pane as the shader reads it.

@@ -1,6 +1,6 @@
 //! The data of a panel for all passes.
 
-use super::pipeline::{bind, element, group_layout, textures_entry, uniform_entry};
+use super::pipeline::{bind, element, group_layout, texture_entry, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::look::BODIES;
 use crate::picture::measures::edging;
@@ -148,7 +148,7 @@ impl Panels {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let scale = uniform_entry(1, SHADES * size_of::<Vec4>(), false);
         let data = uniform_entry(0, size_of::<PanelUniform>(), true);
-        let maps = textures_entry(2, wgpu::TextureSampleType::Depth);
+        let maps = texture_entry(2, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array);
         let layout = group_layout(gpu, "panel", &[data, scale, maps]);
         let uniform = wgpu::BufferUsages::UNIFORM;
         let buffer = GrowingBuffer::new(gpu, "panels", uniform, 4 * STRIDE);

@@ -116,17 +116,8 @@ pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool)
     }
 }
 
-/// A texture that is read pixel by pixel.
-pub(super) fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
-    texture_entry_of(binding, sample_type, wgpu::TextureViewDimension::D2)
-}
-
-/// The same for several textures of one size.
-pub(super) fn textures_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
-    texture_entry_of(binding, sample_type, wgpu::TextureViewDimension::D2Array)
-}
-
-fn texture_entry_of(
+/// A texture that is read pixel by pixel, or several of one size.
+pub(super) fn texture_entry(
     binding: u32,
     sample_type: wgpu::TextureSampleType,
     view_dimension: wgpu::TextureViewDimension,

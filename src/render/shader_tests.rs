@@ -55,7 +55,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
         fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
-        first second middle fade key sky background floor grid shadow viewport);
+        first second fade fade_at_words key sky background floor grid shadow viewport);
 }
 
 #[test]

@@ -61,7 +61,7 @@ impl Variant {
         let constants = format!(
             "const OCCLUDERS = {occluders}u;\nconst TINTED = {tinted};\nconst EDGED = {edged};\nconst SHADOWED = {shadowed};\n"
         );
-        [&constants, super::PANEL_SHADER, super::key::SHADER, SHADER].concat()
+        [&constants, super::PANEL_SHADER, super::KEY_SHADER, SHADER].concat()
     }
 }
 

@@ -12,14 +12,14 @@ pub(super) struct Target {
 }
 
 impl Target {
-    fn new(gpu: &Gpu, label: &str, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> Self {
+    pub(super) fn new(gpu: &Gpu, label: &str, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> Self {
         let usage = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING | Usage::COPY_SRC | Usage::COPY_DST;
         let texture = texture(gpu, label, [width, height, 1], format, usage);
         Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()), texture }
     }
 }
 
-/// The layouts of the bindings of [`Targets`].
+/// The layouts of the bindings of targets.
 #[derive(Debug)]
 pub(super) struct Layouts {
     pub(super) drawn: wgpu::BindGroupLayout,
@@ -28,45 +28,26 @@ pub(super) struct Layouts {
 
 impl Layouts {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let (depth, colour) = (texture_entry(0, Sample::Depth), texture_entry(1, Sample::Float { filterable: false }));
+        let flat = wgpu::TextureViewDimension::D2;
+        let depth = texture_entry(0, Sample::Depth, flat);
+        let colour = texture_entry(1, Sample::Float { filterable: false }, flat);
         Self { drawn: group_layout(gpu, "drawn", &[depth]), behind: group_layout(gpu, "turned over", &[depth, colour]) }
     }
 }
 
-/// The picture and the depths of its bodies.
+/// The depths of bodies or, of another one, of bodies and of the solid obstacles before them.
 #[derive(Debug)]
-pub(super) struct Targets {
-    pub(super) picture: Target,
+pub(super) struct Drawn {
     pub(super) depth: Target,
     /// The depth, bound to be read.
-    pub(super) drawn: wgpu::BindGroup,
+    pub(super) group: wgpu::BindGroup,
 }
 
-impl Targets {
+impl Drawn {
     pub(super) fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2]) -> Self {
         let depth = Target::new(gpu, "depth", size, DEPTH_FORMAT);
-        let drawn = [(0, wgpu::BindingResource::TextureView(&depth.view))];
-        Self {
-            picture: Target::new(gpu, "picture", size, PICTURE_FORMAT),
-            drawn: bind(gpu, "drawn", &layouts.drawn, &drawn),
-            depth,
-        }
-    }
-}
-
-/// The depths of bodies and of the solid obstacles before them.
-#[derive(Debug)]
-pub(super) struct Solids {
-    pub(super) depth: Target,
-    /// The depth, bound to be read.
-    pub(super) drawn: wgpu::BindGroup,
-}
-
-impl Solids {
-    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, size: [u32; 2]) -> Self {
-        let depth = Target::new(gpu, "depth with obstacles", size, DEPTH_FORMAT);
-        let drawn = [(0, wgpu::BindingResource::TextureView(&depth.view))];
-        Self { drawn: bind(gpu, "drawn with obstacles", &layouts.drawn, &drawn), depth }
+        let group = bind(gpu, "drawn", &layouts.drawn, &[(0, wgpu::BindingResource::TextureView(&depth.view))]);
+        Self { depth, group }
     }
 }
 

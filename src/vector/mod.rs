@@ -105,7 +105,7 @@ pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
         // The opacity of edges stays that of the picture.
         panel.sight.line_scale *= times;
         panel.sight.focal *= times;
-        panel.floor.iter_mut().for_each(|floor| floor.fade_above *= times);
+        panel.floor.iter_mut().for_each(|floor| floor.fade_at_words = floor.fade_at_words.map(|height| times * height));
         if let Some(fade) = &mut panel.obstacles.fade {
             fade.room = fade.room.map(|side| times * side);
             fade.distance = fade.distance.map(|length| times * length);

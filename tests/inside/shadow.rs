@@ -26,7 +26,7 @@ fn a_block_shades_what_lies_behind_it_and_nothing_before_it() {
     let plane = Plane::new(DVec3::Y, 0.0);
     let key = DVec3::new(-1.0, 1.0, 0.0).normalize();
     let edges = edges(&triangles);
-    let [of_key, of_sky] = Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
+    let [of_key, of_sky] = Casters::new(points, &triangles, &edges).shades(&plane, key, 4.0, 1.0);
     let on_floor = |x: f64, z: f64| DVec2::new(x * plane.axes[0].x + z * plane.axes[0].z, z * plane.axes[1].z);
     assert_eq!(value(&of_key, on_floor(0.0, 0.0)), 255);
     assert!(value(&of_key, on_floor(1.0, 0.0)) > 250);
@@ -102,7 +102,7 @@ fn wild_coordinates_do_no_harm() {
     let plane = Plane::new(DVec3::Y, 0.0);
     let edges = edges(&triangles);
     let key = DVec3::new(-0.3, 0.9, 0.1).normalize();
-    let [a, b] = Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
+    let [a, b] = Casters::new(points, &triangles, &edges).shades(&plane, key, 4.0, 1.0);
     assert!(a.length.is_finite() && b.length.is_finite() && a.corner.iter().all(|at| at.is_finite()));
 }
 
@@ -138,7 +138,7 @@ fn a_coarse_shape_is_closed_and_casts_nearly_the_same_shadow() {
     coarse.add_shape(shape.points.iter().map(|&at| points[at as usize]), &shape);
     let plane = Plane::new(DVec3::Y, 0.0);
     let key = DVec3::new(-1.0, 2.0, 0.5).normalize();
-    let [fine, coarse] = [fine, coarse].map(|casters| casters.shades(&plane, key, DVec2::ZERO, 4.0, 1.0));
+    let [fine, coarse] = [fine, coarse].map(|casters| casters.shades(&plane, key, 4.0, 1.0));
     for (one, other) in fine.iter().zip(&coarse) {
         assert_eq!(one.cells.len(), other.cells.len());
         let apart = one.cells.iter().zip(&other.cells).map(|(a, b)| a.abs_diff(*b));
@@ -162,7 +162,7 @@ fn a_thousand_boxes_in_each_other_cast_the_shadow_of_one() {
     let mut all = Casters::new(Vec::new(), &[], &[]);
     all.add_shape(shape.points.iter().map(|&at| points[at as usize]), &shape);
     let (plane, key) = (Plane::new(DVec3::Y, 0.0), DVec3::new(-1.0, 2.0, 0.5).normalize());
-    let [one, all] = [one, all].map(|casters| casters.shades(&plane, key, DVec2::ZERO, 4.0, 1.0));
+    let [one, all] = [one, all].map(|casters| casters.shades(&plane, key, 4.0, 1.0));
     for (one, all) in one.iter().zip(&all) {
         let apart = one.cells.iter().zip(&all.cells).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(one.cells.iter().max() > Some(&100) && apart < Some(40), "{apart:?}");

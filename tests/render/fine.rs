@@ -29,7 +29,7 @@ fn larger(picture: &Listed) -> Listed {
         sight.line_scale *= times;
         // `element` is not scaled: it determines how faint the edges of small elements are.
         sight.middle = sight.middle.map(|at| at * times);
-        panel.floor.iter_mut().for_each(|floor| floor.fade_above *= times);
+        panel.floor.iter_mut().for_each(|floor| floor.fade_at_words = floor.fade_at_words.map(|height| times * height));
         let fades = panel.obstacles.fade.iter_mut();
         fades.flat_map(|fade| fade.room.iter_mut().chain(&mut fade.distance)).for_each(|at| *at *= times);
         if sight.flat {

@@ -14,7 +14,7 @@ use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::geometry;
 use crate::sim::{Motion, Obstacle, Shape};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// The distances at which floor, grid and shadow begin and end to fade (sizes of the body around the target).
 const FLOOR_FADE: [f64; 2] = [0.7, 2.0];
@@ -60,25 +60,23 @@ impl Draft<'_> {
         let view = &self.scene.view;
         let farther = self.farther(&plane);
         let fade = FLOOR_FADE.map(|sizes| sizes * self.composer.extent / self.side * self.widening() + farther);
-        // The target is the origin, projected onto the floor.
-        let middle = DVec2::ZERO;
         let cell = self.cell();
         let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
-        let [_, below] = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
-        // No grid lies behind text below the body. Without words the floor extends to the border.
-        let fade_above = if self.clear == self.viewport { 1.0 } else { (below + MARGIN) * self.scale.unit };
+        let rooms = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
+        // No grid lies behind words above and below the body. Without words the floor extends to the border.
+        let has_words = self.clear != self.viewport;
+        let fade_at_words = rooms.map(|room| if has_words { (room + MARGIN) * self.scale.unit } else { 0.5 });
         Some(Floor {
             normal: narrow_point(plane.normal),
             axes: plane.axes.map(narrow_point),
             height: narrow(plane.height),
-            middle: [narrow(middle.x), narrow(middle.y)],
             cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
-            fade_above: narrow(fade_above),
+            fade_at_words: fade_at_words.map(narrow),
             is_filled: view.floor != FloorStyle::None,
             has_grid: view.floor == FloorStyle::Grid,
-            shades: self.shadows(staged, &plane, middle, fade[1]),
+            shades: self.shadows(staged, &plane, fade[1]),
         })
     }
 
@@ -120,10 +118,10 @@ impl Draft<'_> {
         (plane, anchor)
     }
 
-    /// The shadows of key light and sky, within `reach` of a point on the ground (sides).
-    fn shadows(&self, staged: &Staged, plane: &Plane, middle: DVec2, reach: f64) -> [Shade; 2] {
+    /// The shadows of key light and sky, within `reach` of the point on the ground below the target (sides).
+    fn shadows(&self, staged: &Staged, plane: &Plane, reach: f64) -> [Shade; 2] {
         let mut shades = if self.scene.view.shadow && self.key.dot(plane.normal) > 0.05 {
-            self.casters(staged).shades(plane, self.key, middle, reach, self.bodies.soft)
+            self.casters(staged).shades(plane, self.key, reach, self.bodies.soft)
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
