@@ -225,14 +225,22 @@ impl Fonts {
     }
 
     /// One of several texts, shortened if they are too long. The part that distinguishes it from the others is kept as
-    /// far as possible.
+    /// far as possible: what all end with is left out if they would be equal.
     pub(crate) fn told_apart(&self, text: &str, all: &[&str], weight: Weight, size: f64, room: f64) -> String {
+        let ends = all.iter().filter(|&&other| other != text).map(|other| shared_end(text, other));
+        let end = ends.min().filter(|&end| end < text.len()).unwrap_or_default();
+        let without_end = |text: &str| format!("{}{ELLIPSIS}", text[..text.len() - end].trim_end());
         let cut = |text: &str, beginning: f64| self.cut_out(text, weight, size, room, beginning);
-        let own = |&beginning: &f64| {
-            let own = cut(text, beginning);
-            all.iter().all(|&other| other == text || cut(other, beginning) != own)
+        let whole = BEGINNINGS.map(|beginning| (false, beginning));
+        let of = |text: &str, (is_cut, beginning): (bool, f64)| {
+            if is_cut { cut(&without_end(text), beginning) } else { cut(text, beginning) }
         };
-        cut(text, BEGINNINGS.into_iter().find(own).unwrap_or(BEGINNINGS[0]))
+        let is_own = |&way: &(bool, f64)| {
+            let own = of(text, way);
+            all.iter().all(|&other| other == text || of(other, way) != own)
+        };
+        let ways = whole.into_iter().chain(whole.map(|(_, beginning)| (true, beginning)));
+        of(text, ways.into_iter().find(is_own).unwrap_or(whole[0]))
     }
 
     /// A text for a room (px) without the part between its beginning, which gets a share of the room, and its end.
@@ -297,6 +305,12 @@ impl Fonts {
             has_halo: false,
         }
     }
+}
+
+/// The length of the end that two texts have in common (bytes).
+fn shared_end(one: &str, other: &str) -> usize {
+    let letters = one.chars().rev().zip(other.chars().rev());
+    letters.take_while(|(one, other)| one == other).map(|(letter, _)| letter.len_utf8()).sum()
 }
 
 impl Face {
@@ -369,6 +383,7 @@ mod tests {
         let end = "with accumulated rotations and the usual stiffness";
         for all in [
             ["Local shape", "Local shape, soft", "Local shape, stiff"].map(|name| format!("{name} {end}")),
+            ["1", "2", "3"].map(|number| format!("{end} and number {number} {end}")),
             ["soft", "stiff", "usual"].map(|name| format!("{end} and {end}, {name}")),
         ] {
             let all = all.each_ref().map(String::as_str);
