@@ -112,11 +112,13 @@ pub(crate) fn crossing(scene: &Scene, frame: &RunFrame) -> Option<String> {
         return None;
     }
     let crossed = of.of.iter().zip(&snapshot.of_bodies).filter(|(_, own)| own.crossings > 0.0);
-    let names: Vec<_> = crossed.map(|(&body, _)| &scene.bodies[body].name).collect();
+    // Only a single body has no name.
+    let names: Vec<_> = crossed.map(|(&body, _)| &scene.bodies[body].name).filter(|name| !name.is_empty()).collect();
+    let of_bodies = if names.is_empty() { "" } else { ", of " };
     let (names, time) = (list(&names, "and", |name| format!("“{name}”")), short(snapshot.time));
     let (shorter, pairs) = (short(of.step / 2.0), several(count as u64, "crossing"));
     let step = format!("the step is too long for contact; take a shorter one, such as {shorter} s");
-    Some(format!("surfaces cross at {time} s in “{}”, of {names} ({pairs}): {step}", of.name))
+    Some(format!("surfaces cross at {time} s in “{}”{of_bodies}{names} ({pairs}): {step}", of.name))
 }
 
 /// The pairs of bodies among the `wanted` ones that overlap with nodes at given positions (m), in order. Bodies that touch do not overlap.

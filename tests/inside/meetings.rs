@@ -110,3 +110,16 @@ fn an_interruption_changes_no_message() {
         assert_eq!(messages, expected, "after {taken} frames");
     }
 }
+
+/// A single body needs no name, and then has none in the message.
+#[test]
+fn crossings_of_a_body_without_a_name_are_told() {
+    let text = "time = { duration = 0.1, frames_per_second = 10 }
+        body = { lattice = { cells = [1, 1, 1], side = 0.1 } }
+        run = [{ name = 'mat', model = { kind = 'shape-based', stiffness = 1e4 } }]";
+    let scene = Scene::parse(text, "test.toml", &Limits::default()).expect("a scene");
+    let mut frame = Runner::new(&scene, &[0]).frame(0).runs.remove(0);
+    (frame.snapshot.diagnostics.crossings, frame.snapshot.of_bodies[0].crossings) = (11.0, 11.0);
+    let told = crossing(&scene, &frame).expect("a message");
+    assert!(told.starts_with("surfaces cross at 0 s in “mat” (11 crossings): the step is too long"), "{told}");
+}
