@@ -291,7 +291,7 @@ impl Writer<'_> {
     }
 
     /// Tally and count, lower left, each between two places from the left margin (px). The words below the count may go on to `end`: they
-    /// tell how many elements are flat or, with names of bodies, the count of each, if there is room.
+    /// tell how many elements are flat or, beside broken ones, turned over, or with names of bodies the count of each, if there is room.
     pub(super) fn count(
         &mut self,
         panel: Rectangle,
@@ -321,13 +321,13 @@ impl Writer<'_> {
         let [count, all] = [count, turned_over.len()].map(number::count);
         let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-        let has_flat = flattened > 0 && state == TURNED_OVER;
-        let with_flat = has_flat.then(|| format!("{state}, {} flat", number::count(flattened)));
+        let (also, what) = if state == TURNED_OVER { (flattened, "flat") } else { (over, TURNED_OVER) };
+        let with_others = (also > 0).then(|| format!("{state}, {} {what}", number::count(also)));
         let of_bodies = of_bodies(state, names, tally.counts(which));
         let fits = |text: &String, room| self.fonts.width(text, Weight::Regular, caption) <= room;
-        let with_flat = with_flat.filter(|text| fits(text, end - left));
+        let with_others = with_others.filter(|text| fits(text, end - left));
         // What stands here in one frame stands here in all.
-        let state = of_bodies.filter(|text| fits(text, free)).or(with_flat).unwrap_or_else(|| state.to_owned());
+        let state = of_bodies.filter(|text| fits(text, free)).or(with_others).unwrap_or_else(|| state.to_owned());
         let free = free.max(end - left);
         let state = self.fonts.shortened(&state, Weight::Regular, caption, free);
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);

@@ -508,6 +508,13 @@ fn flat_elements_are_a_state_of_their_own() {
 
 #[test]
 fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
+    // Where broken elements are counted, turned-over ones are told beside them.
+    let mut frame = frame;
+    let of_one = |one: usize| (0..27).map(|element| element == one).collect::<Vec<_>>();
+    // The first panel has a scale bar beside the count.
+    (frame.runs[1].snapshot.broken, frame.runs[1].snapshot.turned_over) = (of_one(3), of_one(5));
+    let picture = compose(&scene, &frame);
+    assert!(says(&picture, "1 of 27") && says(&picture, "broken, 1 turned over"));
     let (mut scene, _) = fig4b(0);
     scene.view.visible = localshape::look::Visible { springs: true, ..Default::default() };
     let scale = ColourScale { field: Field::Strain, to: None, range: [-0.1, 0.1], map: ColourMap::VioletGreen };
