@@ -194,7 +194,8 @@ impl Draft<'_> {
 
     /// Draws lines and nodes.
     fn wire(&self) -> Wire<'_> {
-        Wire { draft: self, shades: (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..])) }
+        let shades = (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..]));
+        Wire { draft: self, shades, is_bare: false }
     }
 }
 

@@ -23,8 +23,10 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
-/// Small elements get thinner lines, down to this part of their width, and fainter ones behind surfaces.
+/// Small elements get thinner lines, down to this part of their width, and fainter ones behind surfaces. Elements without faces are lines
+/// alone, and stay wider.
 const THINNEST: f64 = 0.2;
+const THINNEST_BARE: f64 = 0.6;
 /// Springs of smaller elements (px) are left out behind surfaces: even the faintest would be too many.
 const SEEN_THROUGH: f64 = 8.0;
 /// The share of the background in the colour of the farthest line or node, as a depth cue without surfaces.
@@ -80,6 +82,8 @@ pub(super) struct Wire<'a> {
     pub(super) draft: &'a Draft<'a>,
     /// The field that colours lines and nodes without surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
+    /// Whether lines stand for elements without faces.
+    pub(super) is_bare: bool,
 }
 
 impl Wire<'_> {
@@ -172,16 +176,16 @@ impl Wire<'_> {
 
     /// Elements without faces, coloured by a field like the surfaces beside them.
     pub(super) fn bare(&self, elements: &[usize], [turned_over, broken]: [&[bool]; 2]) -> Vec<Stroke> {
-        let mut strokes = Vec::new();
+        let (mut strokes, lines) = (Vec::new(), Wire { is_bare: true, ..*self });
         for &element in elements.iter().filter(|&&element| !is_broken(broken, element as u32)) {
             let over = turned_over.get(element).copied().unwrap_or(false);
             let edges = self.draft.body.topology().edges_of(element);
             if edges.is_empty() {
-                self.spokes(element, self.draft.palette.edge, BARE, &mut strokes);
+                lines.spokes(element, self.draft.palette.edge, BARE, &mut strokes);
             }
-            edges.iter().for_each(|&ends| self.stroke(ends, self.draft.palette.edge, BARE, &|_| 0.0, &mut strokes));
+            edges.iter().for_each(|&ends| lines.stroke(ends, self.draft.palette.edge, BARE, &|_| 0.0, &mut strokes));
             if over {
-                let plain = Wire { shades: None, ..*self };
+                let plain = Wire { shades: None, ..lines };
                 edges
                     .iter()
                     .for_each(|&ends| plain.stroke(ends, self.draft.palette.alarm, EDGE, &|_| 0.0, &mut strokes));
@@ -256,6 +260,7 @@ impl Wire<'_> {
     }
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Placed {
+        let thinnest = if self.is_bare { THINNEST_BARE } else { THINNEST };
         let strength = (self.draft.element / f64::from(SMALL_ELEMENT)).clamp(0.0, 1.0);
         let behind = (BEHIND * strength * strength).round() as u8;
         let stroke = Stroke {
@@ -263,7 +268,7 @@ impl Wire<'_> {
             colours,
             second: Second::None,
             behind: if self.surfaces() { behind.max(1) } else { 0 },
-            width: narrow(width * self.draft.scale.line() * strength.max(THINNEST)),
+            width: narrow(width * self.draft.scale.line() * strength.max(thinnest)),
         };
         (self.depth(ends[0].midpoint(ends[1])), stroke)
     }
