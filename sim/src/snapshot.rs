@@ -3,8 +3,7 @@
 use super::contact::{ContactPoint, Reaction};
 use super::diagnostics::Diagnostics;
 use super::placement::Placement;
-use super::state::Status;
-use super::state::Unsolved;
+use super::state::{Status, Unsolved};
 use glam::DVec3;
 
 /// The state of all bodies of one run at one moment, with its diagnostics.

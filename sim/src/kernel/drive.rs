@@ -156,7 +156,7 @@ impl Dynamics for ByKernel {
                 impulses,
                 floor: met.floor().filter(|_| impulses.is_none()),
                 apart,
-                grips: Some(&held),
+                grips: (!grips.is_empty()).then_some(&held),
                 held: &[],
                 meeting: system.contact.as_ref().map(|stage| Meeting {
                     meet: &meet,

@@ -184,7 +184,7 @@ pub(crate) struct Around<'a> {
     pub(crate) floor: Option<Floor>,
     /// The nodes of parts that meet no obstacle.
     pub(crate) apart: &'a [Range<usize>],
-    /// The nodes that grips hold, if any grip is active.
+    /// The nodes that grips hold; `None` without grips.
     pub(crate) grips: Option<&'a Held<'a>>,
     /// Whether each node of the part is one of them, which has no speed of its own; empty if none is.
     pub(crate) held: &'a [bool],
