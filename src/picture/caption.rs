@@ -77,10 +77,15 @@ impl<'a> Writer<'a> {
         Self { palette, fonts, scale, marks, curves, words }
     }
 
-    /// Gives a halo to words over bodies and plates.
-    pub(super) fn over_bodies(&mut self, panels: &[Panel]) {
+    /// Gives a halo to words over bodies, plates and, if there are any in the plane, slopes.
+    pub(super) fn over_bodies(&mut self, panels: &[Panel], have_slopes: bool) {
         for word in &mut self.words {
-            word.has_halo = panels.iter().any(|panel| word.touches(panel.region) || panel.has_pane_at(word.bounds()));
+            let is_under = |panel: &Panel| {
+                let is_in_panel = || have_slopes && word.touches(panel.viewport);
+                word.touches(panel.region) || panel.has_pane_at(word.bounds()) || is_in_panel()
+            };
+            // Numbers in discs have the colour of the ground.
+            word.has_halo = word.colour != self.palette.background && panels.iter().any(is_under);
         }
     }
 

@@ -432,7 +432,7 @@ fn runs_that_others_are_compared_with_cannot_be_left_out() {
 #[test]
 fn the_camera_turns_to_where_no_obstacle_hides_the_body() {
     let Some(place) = place_to_draw() else { return };
-    let wall = "[[obstacle]]\nkind = \"box\"\ncentre = [0.3, 0.1, 0.5]\nsize = [0.3, 2.0, 0.02]\nrotation = [0.0, 0.541, 0.0]\n";
+    let wall = "[[obstacle]]\nkind = \"box\"\ncentre = [0.3, 0.1, 0.5]\nsize = [0.3, 2.0, 0.02]\nrotation = { axis = [0, 1, 0], angle = 0.541 }\n";
     let azimuth = |scene: &str| {
         place.write("wall.toml", scene);
         place.run("render wall.toml --overwrite --size 480x320 --frames 0").good();

@@ -224,7 +224,7 @@ impl<'a> Composer<'a> {
         marks.extend(hairlines);
         writer.curves.extend(curves);
         // Text and tallies lie above bodies; text over a body gets a halo.
-        writer.over_bodies(&panels);
+        writer.over_bodies(&panels, plane_marks::have_slopes(self.scene));
         marks.extend(writer.items());
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
         Picture { size, palette: self.palette, fonts, ramp, panels, under, above: marks }

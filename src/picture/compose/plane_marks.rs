@@ -12,7 +12,8 @@ use crate::picture::narrow::narrow;
 use crate::picture::page::{Path, Step, direction, point, winding};
 use crate::picture::plane::{WHOLE, clipped, from_side, is_inside, sides};
 use crate::picture::shell::is_broken;
-use crate::sim::Motion;
+use crate::scene::Scene;
+use crate::sim::{Dimension, Motion, Obstacle};
 use glam::{DVec2, DVec3, Vec2};
 use std::f64::consts::TAU;
 
@@ -39,6 +40,15 @@ const MOST_SIGNS: usize = 16;
 /// The centre and radius of a circle inside a polygon (px).
 type Circle = (DVec2, f64);
 
+/// Whether a scene in the plane has slopes, walls or floors that move, which may run behind words.
+pub(super) fn have_slopes(scene: &Scene) -> bool {
+    let is_slope = |obstacle: &Obstacle| {
+        let is_level = |(normal, _): HalfSpace| normal.y.abs() >= LEVEL && obstacle.motion == Motion::Still;
+        half_space(obstacle, 0.0).is_some_and(|floor| !is_level(floor))
+    };
+    scene.dimension() == Dimension::Plane && scene.obstacles.iter().any(is_slope)
+}
+
 impl Draft<'_> {
     /// All floors, below the body.
     pub(super) fn floors(&self, marks: &mut Vec<Item>) {
@@ -49,7 +59,8 @@ impl Draft<'_> {
         }
     }
 
-    /// A floor at any angle, also a wall or a ceiling: a line between the words, soft on its solid side.
+    /// A floor at any angle, also a wall or a ceiling: a line between the words or, of a slope and a wall, to the borders of the panel, soft on its
+    /// solid side.
     fn floor_in_plane(&self, (normal, height): HalfSpace, is_still: bool, marks: &mut Vec<Item>) {
         let unit = self.scale.unit;
         // The point of the floor nearest to the middle of the picture.
@@ -60,15 +71,16 @@ impl Draft<'_> {
             start.y = if is_still && !self.framing.moves { start.y.round() } else { sharpened(start.y) };
         }
         let along = DVec2::new(normal.y, normal.x);
-        let [left, top, width, height] = self.viewport.map(f64::from);
         let mut clear = sides(self.clear.map(f64::from));
         if normal.y > LEVEL {
             // Only below a body: below the captions it would look like an underline.
-            clear[3] = (clear[3] + RING * unit).min(top + height);
+            clear[3] = (clear[3] + RING * unit).min(sides(self.viewport.map(f64::from))[3]);
         }
         if normal.y.abs() < LEVEL {
-            // Slopes and walls reach the sides of the panel, where they are cut.
-            (clear[0], clear[2]) = (left - MARGIN * unit, left + width + MARGIN * unit);
+            // They are cut there, so that their ends are not seen.
+            let [left, top, right, bottom] = sides(self.viewport.map(f64::from));
+            let more = MARGIN * unit;
+            clear = [left - more, top - more, right + more, bottom + more];
         }
         let Some([from, to]) = clipped(start, along, clear, WHOLE) else { return };
         let (inward, depth) = (along.perp(), MARGIN * unit);

@@ -26,6 +26,7 @@ use crate::picture::chart::Stack;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::compose::overlay::{KeyPlace, have_colours_of_runs};
+use crate::picture::compose::plane_marks::have_slopes;
 use crate::picture::layout::steps::{FREE, NEAR};
 use crate::picture::layout::{self, Part, Room, Scale, Wanted};
 use crate::picture::legend::Legend;
@@ -86,7 +87,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
         let ends = cameras::collapsed(&draft);
         writer.curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
     }
-    writer.over_bodies(&panels);
+    writer.over_bodies(&panels, scenes.iter().any(have_slopes));
     marks.extend(writer.items());
     let ramp = composers.first().map_or_else(Vec::new, |composer| composer.ramp.clone());
     (Picture { size, palette: *palette, fonts, ramp, panels, under, above: marks }, left_out)
