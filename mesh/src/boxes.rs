@@ -122,7 +122,7 @@ impl Boxes {
 }
 
 /// The point of a triangle that is nearest to another point (m). The triangle may be a line or a point.
-pub fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+pub(crate) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
     let on_line = |from: DVec3, to: DVec3| {
         let along = to - from;
         from + along * (along.dot(point - from) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)

@@ -16,7 +16,6 @@ mod surface;
 mod volume;
 mod weld;
 
-pub use boxes::nearest_of;
 pub use edges::Sets;
 pub use fill::{Cage, Fill, FillError, Filled, fill};
 pub use read::{

@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 /// boxes along the axes hide their depth.
 const TURNS: [i8; 12] = [0, 1, -2, 3, -3, 4, -5, 6, -1, 2, -4, 5];
 /// The share of hidden nodes that is worth no other azimuth than those before.
+#[cfg(feature = "render")]
 const LITTLE: f64 = 0.05;
 /// So many nodes of a run are looked at, spread by the golden ratio: an even stride could be a row of a lattice.
 const NODES: usize = 64;
@@ -63,12 +64,14 @@ impl Hidden {
     }
 
     /// Adds what was seen in another course.
+    #[cfg(feature = "render")]
     pub(crate) fn merge(&mut self, other: &Self) {
         self.shares.iter_mut().zip(other.shares).for_each(|(share, more)| *share += more);
         self.all += other.all;
     }
 
     /// The place of the chosen azimuth among all.
+    #[cfg(feature = "render")]
     pub(crate) fn choice(&self) -> usize {
         let least = self.shares.iter().copied().fold(f64::INFINITY, f64::min);
         let is_enough = |&share: &f64| share <= least + LITTLE * self.all;
@@ -108,7 +111,7 @@ fn is_near([one, to]: [DVec3; 2], radius: f64, from: DVec3, ray: DVec3) -> bool 
     (nearest - from).dot(ray) > 0.0 && across(nearest - from).length() < radius
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "render"))]
 mod tests {
     use super::*;
     use crate::sim::Motion;

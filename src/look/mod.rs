@@ -23,7 +23,7 @@ pub(crate) mod typed;
 mod view;
 
 pub use crate::colour::Colour;
-pub(crate) use azimuth::{Hidden, azimuths};
+pub(crate) use azimuth::Hidden;
 pub use camera::Camera;
 pub(crate) use camera_box::CameraBoxes;
 pub(crate) use contrast::check_runs;
@@ -38,6 +38,7 @@ pub(crate) use subject::{Subject, SubjectBody, SubjectRun};
 pub use view::{ColourScale, EdgeStyle, FloorStyle, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
 pub(crate) use {
+    azimuth::azimuths,
     camera::axes,
     camera_box::CameraBox,
     drawn::LineStyle,

@@ -26,8 +26,9 @@ pub struct History {
     pub series: Vec<TimeSeries>,
 }
 
+#[cfg(feature = "render")]
 impl History {
-    /// The place of the chosen azimuth among [those](crate::look::azimuths) of the camera. What diverges does not count.
+    /// The place of the chosen azimuth among those of the camera. What diverges does not count.
     pub(crate) fn azimuth(&self) -> usize {
         let mut hidden = Hidden::default();
         let sound = self.series.iter().filter(|series| series.divergence.is_none());

@@ -1,7 +1,6 @@
 //! The ambient occlusion of solid obstacles by a body near them.
 
 use super::space::Staging;
-use crate::mesh::nearest_of;
 use glam::DVec3;
 
 /// The distance at which occlusion between a body and an obstacle begins (soft units). The shader that lights bodies has
@@ -62,7 +61,7 @@ impl Near {
         let (mut nearest, mut way) = (self.reach, DVec3::ZERO);
         for piece in &self.pieces {
             if piece.middle.distance_squared(point) < (nearest + piece.radius).powi(2) {
-                let there = nearest_of(piece.corners, point) - point;
+                let there = nearest_point(piece.corners, point) - point;
                 let distance = there.length();
                 if distance < nearest {
                     (nearest, way) = (distance, there);
@@ -84,9 +83,60 @@ fn bounds(points: impl Iterator<Item = DVec3>, room: f64) -> [DVec3; 2] {
     [low - room, high + room]
 }
 
+/// The point of a triangle that is nearest to another point (Ericson 2004, Real-Time Collision Detection, 5.1.5).
+fn nearest_point([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+    let (along_b, along_c) = (b - a, c - a);
+    let from_a = point - a;
+    let [d1, d2] = [along_b.dot(from_a), along_c.dot(from_a)];
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let from_b = point - b;
+    let [d3, d4] = [along_b.dot(from_b), along_c.dot(from_b)];
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let of_c = d1 * d4 - d3 * d2;
+    if of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + d1 / (d1 - d3) * along_b;
+    }
+    let from_c = point - c;
+    let [d5, d6] = [along_b.dot(from_c), along_c.dot(from_c)];
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let of_b = d5 * d2 - d1 * d6;
+    if of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + d2 / (d2 - d6) * along_c;
+    }
+    let of_a = d3 * d6 - d5 * d4;
+    if of_a <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+    }
+    a + (of_b * along_b + of_c * along_c) / (of_a + of_b + of_c)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_point_of_a_triangle_is_nearer_than_the_nearest() {
+        let triangle = [DVec3::new(0.1, 0.0, 0.2), DVec3::new(1.0, 0.3, 0.0), DVec3::new(0.2, 0.9, -0.3)];
+        let [a, b, c] = triangle;
+        for at in 0..1000u32 {
+            let point = DVec3::from_array([at % 10, at / 10 % 10, at / 100].map(|n| f64::from(n) * 0.3 - 1.2));
+            let least = nearest_point(triangle, point).distance(point);
+            for i in 0..=20 {
+                for j in 0..=20 - i {
+                    let there = a + (b - a) * f64::from(i) / 20.0 + (c - a) * f64::from(j) / 20.0;
+                    assert!(there.distance(point) >= least - 1e-12, "{point}");
+                }
+            }
+            let beside = [a, b, c].map(|corner| corner.distance(point)).into_iter().fold(f64::INFINITY, f64::min);
+            assert!(least <= beside + 1e-12);
+        }
+    }
 
     #[test]
     fn what_touches_is_near_and_nearness_fades_smoothly() {
