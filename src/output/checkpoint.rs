@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
-const MARK: &[u8] = b"localshape checkpoint 9\n";
+const MARK: &[u8] = b"localshape checkpoint 10\n";
 /// The beginning of the marks of all versions.
 const ANY_MARK: &[u8] = b"localshape checkpoint ";
 

@@ -227,9 +227,8 @@ impl StatesWriter {
 
     /// Stores the drawn state of a run, by its place among the runs, if the run diverges; see
     /// [`Frames::last_fit`](crate::runner::Frames::last_fit).
-    pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<(&State, f64)>>) {
-        let bytes = |(state, times_wider): (&State, f64)| (state.to_bytes(), times_wider);
-        self.written.course.runs[place].last_fit = found.flatten().map(bytes);
+    pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<&State>>) {
+        self.written.course.runs[place].last_fit = found.flatten().map(State::to_bytes);
     }
 
     /// Adds the time series of the scene.

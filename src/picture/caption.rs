@@ -492,18 +492,16 @@ pub(super) fn letter(at: usize) -> String {
     if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
 }
 
-/// Replaces the number of a run that diverges within the shown time of a scene that lasts `span` (s): when it diverges, and how much wider it
-/// becomes.
+/// Replaces the number of a run that diverges within the shown time of a scene that lasts `span` (s): when it diverges, and which moment is
+/// shown from then on.
 pub(super) fn divergence(run: &RunFrame, span: f64) -> Option<Number> {
     let Status::Diverged(Divergence { time, is_end, .. }) = run.shown().status else { return None };
     let (loud, at) = (diverges(run), format!("at {}", number::time(time, span)));
-    let shown = number::time(run.shown().time, span);
-    let long = |times| format!("shown at {shown}, then {times} times wider");
-    let wider = times_wider(run).map(long).into_iter().chain(wider(run));
-    let wider: Vec<_> = wider.map(|wider| [format!("{loud} {at}"), wider]).collect();
+    let shown = run.last_fit.as_ref().map(|last| format!("shown as at {}", number::time(last.time, span)));
+    let whole = shown.map(|shown| [format!("{loud} {at}"), shown]);
     let alone = [[loud.to_owned(), at.clone()], [loud.to_owned(), String::new()]];
     let short = [[ENDED.to_owned(), at], [ENDED.to_owned(), String::new()]].into_iter().filter(|_| is_end);
-    let wordings = wider.into_iter().chain(alone).chain(short).collect();
+    let wordings = whole.into_iter().chain(alone).chain(short).collect();
     Some(Number { widest: String::new(), wordings, is_loud: true })
 }
 
@@ -513,16 +511,6 @@ pub(super) fn diverges(run: &RunFrame) -> &'static str {
         Status::Diverged(Divergence { is_end: true, .. }) => RECORDING_ENDS,
         _ => DIVERGES,
     }
-}
-
-/// The final width of a run relative to the shown width, in words; `None` if they are similar.
-pub(super) fn wider(run: &RunFrame) -> Option<String> {
-    times_wider(run).map(|times| format!("{times} times wider than shown"))
-}
-
-fn times_wider(run: &RunFrame) -> Option<String> {
-    let times = run.last_fit.as_ref()?.times_wider;
-    (times >= 1.5).then(|| number::times(times))
 }
 
 /// The number at the lower right of a run that has not diverged, of a body of an extent (m).

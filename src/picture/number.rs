@@ -130,12 +130,6 @@ pub(super) fn with_minus(text: String) -> String {
     set + &text[first + length..]
 }
 
-/// A factor, from a thousand on in powers of ten.
-pub(super) fn times(value: f64) -> String {
-    let whole = value.round();
-    if whole < 999.5 { whole.to_string() } else { format!("{whole:.0e}") }
-}
-
 /// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.
 pub(super) fn round_below(value: f64) -> f64 {
     let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));

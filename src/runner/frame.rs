@@ -21,8 +21,9 @@ pub struct RunFrame {
     pub run: usize,
     /// Its state.
     pub snapshot: Snapshot,
-    /// The last state of a diverging run that fits a picture, from then on; `None` before, and without pictures.
-    pub last_fit: Option<Box<LastFit>>,
+    /// The last state of a diverging run whose bodies are not much wider than at rest or at the start, with its own time and
+    /// the status at the end; from then on. `None` before, and without pictures.
+    pub last_fit: Option<Box<Snapshot>>,
 }
 
 impl RunFrame {
@@ -42,15 +43,6 @@ impl RunFrame {
 
     /// The state that pictures show.
     pub fn shown(&self) -> &Snapshot {
-        self.last_fit.as_ref().map_or(&self.snapshot, |last_fit| &last_fit.snapshot)
+        self.last_fit.as_deref().unwrap_or(&self.snapshot)
     }
-}
-
-/// The last state of a diverging run with a body not much wider than at rest or at the start.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LastFit {
-    /// That state, with its own time and the status at the end.
-    pub snapshot: Snapshot,
-    /// How many times wider the body is when the run stops.
-    pub times_wider: f64,
 }

@@ -36,7 +36,7 @@ pub(crate) struct Progress {
     /// The rows between frames of each run that are not taken yet.
     rows: Vec<Option<VecDeque<TableRow>>>,
     /// The results of [`Frames::last_fit`] for each run, with states as bytes.
-    last_fits: Vec<Option<StoredFit>>,
+    last_fits: Vec<Option<Option<Vec<u8>>>>,
     /// Whether the bodies of each run need not be watched any more.
     met: Vec<bool>,
     /// The number of frames returned.
@@ -44,10 +44,6 @@ pub(crate) struct Progress {
     /// The file of waiting states and the end of each in it, if states wait until the end of the simulation.
     waiting: Option<(Grown, Vec<u64>)>,
 }
-
-/// A last state that fits, as bytes, and the final width of the body relative to it; `None` if the run does not
-/// diverge.
-type StoredFit = Option<(Vec<u8>, f64)>;
 
 impl Progress {
     /// The file with waiting states.
@@ -108,7 +104,7 @@ impl<'a> Frames<'a> {
         let rows = runner.runs.iter().map(|running| running.rows.clone()).collect();
         let met = runner.runs.iter().map(|running| running.watch.is_none()).collect();
         let (taken, runs) = (*taken, 0..runner.runs.len());
-        let last_fit = |place| Some(self.last_fit(place)?.map(|(state, wider)| (state.to_bytes(), wider)));
+        let last_fit = |place| Some(self.last_fit(place)?.map(State::to_bytes));
         let last_fits = runs.map(last_fit).collect();
         Ok(Some(Progress { states, history, rows, last_fits, met, taken, waiting }))
     }
@@ -148,12 +144,12 @@ impl<'a> Frames<'a> {
             running.watch = running.watch.take().filter(|_| !met);
             running.watch.iter_mut().for_each(|watch| watch.goes_on(&running.world));
             if let Some(found) = last_fit {
-                let read = |(bytes, wider): (Vec<u8>, f64)| {
+                let read = |bytes: Vec<u8>| {
                     let state = State::from_bytes(&bytes).filter(|state| running.world.takes(state));
-                    Ok::<_, io::Error>((state.ok_or(io::ErrorKind::InvalidData)?, wider))
+                    state.ok_or(io::Error::from(io::ErrorKind::InvalidData))
                 };
                 let found = found.map(read).transpose()?;
-                running.last_fit = found.map(|(state, wider)| Fitting::new(&mut running.world, state, wider)).into();
+                running.last_fit = found.map(|state| Fitting::new(&mut running.world, state)).into();
             }
             let note = running.notes.get(running.series.times.len()).filter(|_| running.series.divergence.is_none());
             let first = note.map_or(u64::MAX, |&note| running.world.steps_at(note)).min(running.world.steps_at(next));
@@ -267,10 +263,10 @@ impl<'a> Frames<'a> {
     }
 
     /// The drawn state of a run that diverges, if the returned frames show another than the present one: the last state
-    /// that fits, and the final width of the body relative to it. The inner `None` means that the run does not diverge.
-    pub(crate) fn last_fit(&self, place: usize) -> Option<Option<(&State, f64)>> {
+    /// that fits. The inner `None` means that the run does not diverge.
+    pub(crate) fn last_fit(&self, place: usize) -> Option<Option<&State>> {
         let found = self.runner.runs[place].last_fit.get()?;
-        Some(found.as_ref().map(|found| (&found.state, found.shown.times_wider)))
+        Some(found.as_ref().map(|found| &found.state))
     }
 
     /// The time series so far, empty once they were returned.

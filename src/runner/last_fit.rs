@@ -1,8 +1,7 @@
 //! The drawn state of a run that diverged: the last one that is not much wider than the body.
 
-use crate::runner::LastFit;
 use crate::scene::{Run, Scene};
-use crate::sim::{Crew, Divergence, State, Status, World};
+use crate::sim::{Crew, Divergence, Snapshot, State, Status, World};
 use glam::DVec3;
 
 /// A state fits if the nodes of each body lie within this many times the radius of the body at rest or at the start,
@@ -17,18 +16,17 @@ pub(crate) struct Fitting {
     /// The state. Its status has the divergence.
     pub(crate) state: State,
     /// The drawn snapshot.
-    pub(crate) shown: LastFit,
+    pub(crate) shown: Snapshot,
 }
 
 impl Fitting {
-    /// The last fit with a state, in the world of its run, which takes the state, and the final width of the body
-    /// that grew most relative to it.
-    pub(crate) fn new(world: &mut World, state: State, times_wider: f64) -> Self {
+    /// The last fit with a state, in the world of its run, which takes the state.
+    pub(crate) fn new(world: &mut World, state: State) -> Self {
         let present = world.state().clone();
         world.set_state(state.clone());
         let snapshot = world.snapshot();
         world.set_state(present);
-        Self { state, shown: LastFit { snapshot, times_wider } }
+        Self { state, shown: snapshot }
     }
 }
 
@@ -54,8 +52,7 @@ pub(crate) struct Search {
     stride: u64,
     /// The last state that fits so far.
     fitting: State,
-    /// The divergence, and the radius of each body there (m).
-    end: Option<(Divergence, Vec<f64>)>,
+    end: Option<Divergence>,
 }
 
 impl Search {
@@ -83,19 +80,17 @@ impl Search {
                 world.advance(steps);
                 if let Status::Diverged(divergence) = world.status() {
                     *last = divergence.step - 1;
-                    *end = Some((divergence, radii(run, &world.state().position).collect()));
+                    *end = Some(divergence);
                 } else if fits(run, &world.state().position) {
                     fitting.clone_from(world.state());
                 }
                 continue;
             }
-            let Some((divergence, widest)) = end else { return Some(None) };
+            let Some(divergence) = end else { return Some(None) };
             if *stride == 1 {
-                let grown = widest.iter().zip(radii(run, &fitting.position)).map(|(widest, fitting)| widest / fitting);
-                let times_wider = grown.reduce(f64::max).expect("a run has a body");
                 fitting.status = Status::Diverged(*divergence);
                 let fitting = fitting.clone();
-                return Some(Some(Fitting::new(world, fitting, times_wider)));
+                return Some(Some(Fitting::new(world, fitting)));
             }
             *stride = 1;
             world.set_state(fitting.clone());

@@ -15,7 +15,7 @@ use crate::look::{Plot, Traced};
 use crate::scene::measure::Meter;
 use crate::scene::{Recorded, Scene};
 use crate::sim::{Body, Crew, Diagnostic, Diagnostics, Moment, State, Status, World};
-pub use frame::{Frame, LastFit, RunFrame};
+pub use frame::{Frame, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
 pub(crate) use history::TableRow;
 pub use history::{History, TimeSeries};
@@ -300,7 +300,7 @@ impl Running<'_> {
         }
         let search = || Search::new(scene, *run, *threads).advance(scene, u64::MAX).flatten();
         let found = last_fit.get_or_init(search);
-        let shown = found.as_ref().map(|found| &found.shown).filter(|shown| shown.snapshot.step < frame.snapshot.step);
+        let shown = found.as_ref().map(|found| &found.shown).filter(|shown| shown.step < frame.snapshot.step);
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
     }
 
@@ -313,7 +313,7 @@ impl Running<'_> {
     fn showing(mut self, recording: &Arc<Recorded>) -> Self {
         let Self { world, .. } = &mut self;
         let mut last_fit = None;
-        if let Some((state, times_wider)) = &recording.last_fit {
+        if let Some(state) = &recording.last_fit {
             let mut state = state.clone();
             if recording.memory.is_none() {
                 // Nothing of its model is known here.
@@ -322,7 +322,7 @@ impl Running<'_> {
                     (divergence.part, divergence.element) = (0, None);
                 }
             }
-            last_fit = world.takes(&state).then(|| Fitting::new(world, state, *times_wider));
+            last_fit = world.takes(&state).then(|| Fitting::new(world, state));
         }
         Self { recording: Some(Arc::clone(recording)), last_fit: last_fit.into(), ..self }
     }

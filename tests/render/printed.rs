@@ -7,8 +7,8 @@ use glam::Vec2;
 use localshape::look::{Style, Theme};
 use localshape::picture::{Image, Item, Paint, Path, Pen, Picture, compose_figure};
 use localshape::render::Renderer;
+use localshape::runner::Frame;
 use localshape::runner::moments::Moments;
-use localshape::runner::{Frame, LastFit};
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::{Divergence, Status};
@@ -91,7 +91,7 @@ fn diverged(frame: &mut Frame) {
     let snapshot = &mut frame.runs[0].snapshot;
     snapshot.status = Status::Diverged(Divergence { time: 0.0, step: 0, part: 0, element: None, is_end: false });
     let snapshot = snapshot.clone();
-    frame.runs[0].last_fit = Some(Box::new(LastFit { snapshot, times_wider: 1.0 }));
+    frame.runs[0].last_fit = Some(Box::new(snapshot));
 }
 
 fn turned_over(frame: &mut Frame) {

@@ -148,10 +148,9 @@ impl Archive {
             memory: memory.map(|track| track.array.shape[1] as usize),
             divergence,
             last_fit: own.and_then(|own| {
-                let (bytes, times_wider) = own.last_fit.as_ref()?;
-                let mut state = State::from_bytes(bytes)?;
+                let mut state = State::from_bytes(own.last_fit.as_ref()?)?;
                 [&mut state.position, &mut state.velocity].into_iter().for_each(|vectors| axes.place(vectors));
-                Some((state, *times_wider))
+                Some(state)
             }),
             axes,
             digest: hexadecimal(&hash.finalize()),

@@ -55,8 +55,8 @@ pub(crate) struct StoredRun {
     pub(crate) name: String,
     /// The divergence of the run, if it diverged.
     pub(crate) divergence: Option<Divergence>,
-    /// The drawn state of a run that diverges, if a frame shows it, as bytes, and the final width of the body relative to it.
-    pub(crate) last_fit: Option<(Vec<u8>, f64)>,
+    /// The drawn state of a run that diverges, if a frame shows it, as bytes.
+    pub(crate) last_fit: Option<Vec<u8>>,
     /// The SHA-256 of positions, velocities and memory in each frame. Single frames are read, and the archive's own
     /// checksums cover all frames.
     pub(crate) digests: [Vec<[u8; 32]>; 3],

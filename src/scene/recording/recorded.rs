@@ -38,8 +38,8 @@ pub struct Recorded {
     pub(crate) memory: Option<usize>,
     /// Where the run diverged, if it is known. Its last moment is then the last finite state.
     pub(super) divergence: Option<Divergence>,
-    /// The drawn state of a run that diverges, if it is known, and the final width of the body relative to it.
-    pub(crate) last_fit: Option<(State, f64)>,
+    /// The drawn state of a run that diverges, if it is known.
+    pub(crate) last_fit: Option<State>,
     /// A digest of its moments, words and end, 64 hexadecimal digits.
     pub(in crate::scene) digest: String,
     pub(super) rows: Mutex<Rows>,
