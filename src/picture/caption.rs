@@ -349,12 +349,14 @@ impl Writer<'_> {
         [of_bodies.map_or(least, |text| caption(&text).ceil().max(least)), least]
     }
 
-    /// The widths of the widest number at the lower right, diverged or not, in its longest and in its shortest wording
-    /// (px).
-    pub(super) fn number_widths(&self, usual: &Number) -> [f64; 2] {
+    /// The widths of what stands at the lower right (px): that a run diverges, or the widest number, if there is one, in its longest and in its
+    /// shortest wording.
+    pub(super) fn number_widths(&self, usual: Option<&Number>) -> [f64; 2] {
         let diverged = self.fonts.width(DIVERGES, Weight::SemiBold, self.scale.title());
-        [usual.wordings.first(), usual.wordings.last()]
-            .map(|texts| texts.map_or(0.0, |texts| self.number_width(usual, texts)).max(diverged).ceil())
+        let widest = |texts: fn(&[[String; 2]]) -> Option<&[String; 2]>| {
+            usual.and_then(|usual| Some(self.number_width(usual, texts(&usual.wordings)?))).unwrap_or(0.0)
+        };
+        [widest(<[_]>::first), widest(<[_]>::last)].map(|width| width.max(diverged).ceil())
     }
 
     fn number_width(&self, number: &Number, [value, explained]: &[String; 2]) -> f64 {

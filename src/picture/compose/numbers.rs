@@ -55,7 +55,7 @@ impl Composer<'_> {
         let bars = bars.filter(|_| labels.scale_bar);
         // The longest bar that fits into spare room is drawn.
         let bar = bars.reduce(f64::min).map(|least| node(NumberPart::Bar, [least; 2]).stretched().rank(0));
-        let number = node(NumberPart::Number, writer.number_widths(&number)).rank(1);
+        let number = node(NumberPart::Number, writer.number_widths(labels.number.then_some(&number))).rank(1);
         let row = count.into_iter().flatten().chain(bar).chain([number]).collect();
         tree::column(&[Node::new(NumberPart::Row, 1.0).with(row)], [0.0, 0.0, width, 1.0])
     }
