@@ -125,9 +125,7 @@ pub(super) struct Heading<'a> {
     /// The style of the run's curves and arrows.
     pub(super) sample: Option<LineStyle>,
     /// The second line.
-    pub(super) second: String,
-    /// The descriptions of all runs shown.
-    pub(super) descriptions: Vec<&'a str>,
+    pub(super) second: &'a str,
 }
 
 /// A number in a panel.
@@ -186,11 +184,11 @@ impl Writer<'_> {
         free.map(|(baseline, _)| baseline).last()
     }
 
-    /// Letter, name and second line, upper left. `taken` (px) is kept free at the right of each line.
-    pub(super) fn heading(&mut self, panel: Rectangle, heading: &Heading<'_>, taken: [f64; 2]) {
+    /// Letter, name and second line, upper left. `taken` (px) is kept free at the right of the name.
+    pub(super) fn heading(&mut self, panel: Rectangle, heading: &Heading<'_>, taken: f64) {
         let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let free = taken.map(|taken| room.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 });
+        let free = room.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 };
         let baseline = room.top + lines.title;
         let mut left = room.left;
         if !heading.letter.is_empty() {
@@ -199,7 +197,7 @@ impl Writer<'_> {
         }
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
         let reserved = if sample.is_some() { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
-        let free_for_name = free[0] - (left - room.left) - reserved;
+        let free_for_name = free - (left - room.left) - reserved;
         // All names become smaller before one is cut.
         let size = self.size_of_names(heading, free_for_name);
         let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, size, free_for_name);
@@ -208,9 +206,14 @@ impl Writer<'_> {
             let left = left + self.fonts.width(&name, Weight::SemiBold, size) + BESIDE * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        let fits = |text: &str| self.fonts.width(text, Weight::Regular, caption) <= free[1];
-        let second = fitting(&heading.second, &heading.descriptions, fits);
-        self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
+        self.left(
+            heading.second,
+            Weight::Regular,
+            caption,
+            self.palette.second_text,
+            room.left,
+            room.top + lines.second,
+        );
     }
 
     /// The common size of names in headings with a room (px). It is smaller than usual if one of them is too wide, but
@@ -230,12 +233,12 @@ impl Writer<'_> {
         self.marks.push(Item::part("sample", [Item::curve(&ends, BOLD * unit, &dash, colour)]));
     }
 
-    /// Whether a heading is shortened in a room of a width (px): its name, and its second line.
-    pub(super) fn is_shortened(&self, heading: &Heading<'_>, room: f64) -> [bool; 2] {
-        let [first, second] = self.heading_width(heading);
+    /// Whether the name of a heading is shortened in a room of a width (px).
+    pub(super) fn is_shortened(&self, heading: &Heading<'_>, room: f64) -> bool {
+        let [first, _] = self.heading_width(heading);
         let name = self.fonts.width(heading.name, Weight::SemiBold, self.scale.title());
         let least = self.size_of_names(heading, 0.0) / self.scale.title();
-        [first - (1.0 - least) * name > room, second > room]
+        first - (1.0 - least) * name > room
     }
 
     /// The widths of both lines of a heading (px), the first one with letter and sample.
@@ -245,7 +248,7 @@ impl Writer<'_> {
         let letter = if heading.letter.is_empty() { 0.0 } else { wide(&heading.letter) + LETTER_GAP * title };
         let has_sample = heading.sample.is_some() && !heading.name.is_empty();
         let sample = if has_sample { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
-        let second = self.fonts.width(&heading.second, Weight::Regular, self.scale.caption());
+        let second = self.fonts.width(heading.second, Weight::Regular, self.scale.caption());
         [letter + wide(heading.name) + sample, second]
     }
 
@@ -461,24 +464,49 @@ fn parts(description: &str) -> Vec<String> {
     parts
 }
 
-/// As many parts of a description as fit, whole: a number without its middle would be another number. From the end, what follows from other
-/// parts or is the usual choice goes first, then what most descriptions share, and last what tells a run from the others.
-fn fitting(description: &str, all: &[&str], fits: impl Fn(&str) -> bool) -> String {
-    let mut own = parts(description);
-    let all: Vec<_> = all.iter().map(|description| parts(description)).collect();
-    let has_modulus = own.iter().any(|part| part.starts_with("E = "));
-    let rank = |part: &String| match &**part {
-        "exact rotations" => 0,
-        part if part.starts_with("k = ") && has_modulus => 0,
+/// Whether a part of a description follows from its other parts, or is the usual choice.
+fn follows(part: &str, description: &[String]) -> bool {
+    let has_modulus = || description.iter().any(|part| part.starts_with("E = "));
+    part == "exact rotations" || part.starts_with("k = ") && has_modulus()
+}
+
+/// What a part of a description says: `E`, `ζ`, or how many elements there are.
+fn subject(part: &str) -> &str {
+    match part.split_once(" = ") {
         // The parts of several bodies are not told apart.
-        _ if description.contains("; ") => 1,
-        _ => 1 + all.iter().filter(|other| !other.contains(part)).count(),
-    };
-    while !own.is_empty() && !fits(&own.join(BETWEEN_PARTS)) {
-        let first = (0..own.len()).rev().min_by_key(|&at| rank(&own[at]));
-        first.into_iter().for_each(|at| drop(own.remove(at)));
+        _ if part.contains("; ") => part,
+        Some((name, _)) => name,
+        None if part.starts_with(|first: char| first.is_ascii_digit()) => "",
+        None => part,
     }
-    own.join(BETWEEN_PARTS)
+}
+
+/// The descriptions of runs side by side, with as many parts as fit, whole: a number without its middle would be another number. What follows
+/// from other parts goes first, then what most descriptions share, and last what tells runs apart. All descriptions say the same things: a
+/// part that one run lacks would look like a difference.
+pub(super) fn fitting(descriptions: &[String], fits: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut all: Vec<_> = descriptions.iter().map(|description| parts(description)).collect();
+    while let Some(at) = all.iter().position(|own| !own.is_empty() && !fits(&own.join(BETWEEN_PARTS))) {
+        let own = &all[at];
+        let rank = |part: &String| match () {
+            () if follows(part, own) => 0,
+            () => all.iter().filter(|other| !other.contains(part)).count() + 1,
+        };
+        let Some(first) = (0..own.len()).rev().min_by_key(|&part| rank(&own[part])) else { break };
+        if follows(&own[first], own) {
+            all[at].remove(first);
+        } else {
+            let gone = own[first].clone();
+            all.iter_mut().for_each(|own| own.retain(|part| subject(part) != subject(&gone)));
+        }
+    }
+    all.iter().map(|own| own.join(BETWEEN_PARTS)).collect()
+}
+
+/// Whether a shortened description lacks more than what follows from its other parts.
+pub(super) fn lacks(shortened: &str, whole: &str) -> bool {
+    let [short, whole] = [shortened, whole].map(parts);
+    whole.iter().any(|part| !short.contains(part) && !follows(part, &whole))
 }
 
 /// The number of elements of each named body in a state, in words; `None` without names.
@@ -543,25 +571,41 @@ mod tests {
         assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
     }
 
+    fn short(all: &[&str], most: usize) -> Vec<String> {
+        let all: Vec<_> = all.iter().map(|&text| text.to_owned()).collect();
+        fitting(&all, |text| text.chars().count() <= most)
+    }
+
+    const BRAKES: &str = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1, also of rotation, exact rotations, k = 10 kN/m";
+    const BENDS: &str = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3, exact rotations, k = 10 kN/m";
+
     #[test]
     fn what_tells_runs_apart_is_left_out_last() {
-        let brakes = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1, also of rotation, exact rotations, k = 10 kN/m";
-        let bends = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3, exact rotations, k = 10 kN/m";
-        let short = |text: &str, all: &[&str], most: usize| fitting(text, all, |text| text.chars().count() <= most);
-        let both = [brakes, bends];
-        assert_eq!(short(bends, &both, 100), bends);
-        assert_eq!(short(bends, &both, 65), "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3");
-        assert_eq!(short(bends, &both, 50), "27 cubes, ζ = 0.1 of deformation, β = 1/3");
-        assert_eq!(short(bends, &both, 32), "ζ = 0.1 of deformation, β = 1/3");
-        assert_eq!(short(brakes, &both, 40), "27 cubes, ζ = 0.1, also of rotation");
-        assert_eq!(short(brakes, &both, 10), "");
-        // Parts of most descriptions go before those of few.
-        let springs = "54 springs, k = 10 kN/m, ζ = 0.1";
-        assert_eq!(short(bends, &[brakes, springs, bends, brakes], 32), "ζ = 0.1 of deformation, β = 1/3");
+        let both = [BRAKES, BENDS];
+        assert_eq!(short(&both, 100), both);
+        let expected = [
+            "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1, also of rotation",
+            "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3",
+        ];
+        assert_eq!(short(&both, 65), expected);
+        assert_eq!(short(&both, 32), ["ζ = 0.1, also of rotation", "ζ = 0.1 of deformation, β = 1/3"]);
+        assert_eq!(short(&both, 10), ["", "β = 1/3"]);
         // Parts of one run alone go from the end, as do parts of one of several bodies.
-        assert_eq!(short(bends, &[bends], 50), "27 cubes, E = 200 kPa, ν = 0");
+        assert_eq!(short(&[BENDS], 50), ["27 cubes, E = 200 kPa, ν = 0"]);
         let bodies = "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m, ζ = 0.1";
-        assert_eq!(short(bodies, &[bodies, brakes], 45), "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m");
+        assert_eq!(short(&[bodies, BRAKES], 45)[0], "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m");
+        // What follows from other parts is not missed.
+        assert!(!lacks("27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3", BENDS));
+        assert!(lacks("27 cubes, ζ = 0.1 of deformation, β = 1/3", BENDS));
+    }
+
+    /// `BRAKES` alone would have room for its modulus.
+    #[test]
+    fn runs_side_by_side_say_the_same_things() {
+        let expected = ["27 cubes, ζ = 0.1, also of rotation", "27 cubes, ζ = 0.1 of deformation, β = 1/3"];
+        assert_eq!(short(&[BRAKES, BENDS], 50), expected);
+        let springs = "54 springs, k = 10 kN/m, ζ = 0.1";
+        assert_eq!(short(&[springs, BENDS], 44), ["54 springs, k = 10 kN/m", "27 cubes, E = 200 kPa, ν = 0"]);
     }
 
     #[test]

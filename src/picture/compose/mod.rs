@@ -246,12 +246,12 @@ impl<'a> Composer<'a> {
         let (layout, with_clock) = (&around.layout, around.clock_above.is_none());
         let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
-        let names = words.names(&runs);
+        let (names, [_, seconds]) = (words.names(&runs), words.seconds(&runs, layout));
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let &WordsShown { labels, events, .. } = &layout.written;
-            let heading = words.heading(at, &runs, &names, layout);
+            let heading = words.heading(at, &runs, &names, &seconds, layout);
             let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
-            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(layout)) } else { [0.0; 2] };
+            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(layout))[0] } else { 0.0 };
             writer.heading(viewport, &heading, taken);
             if let (Some(timeline), Some(shown)) =
                 (self.timeline.as_ref().filter(|_| events), self.scene.runs.get(run.run))

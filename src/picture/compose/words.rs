@@ -3,7 +3,7 @@
 use super::Composer;
 use super::overlay::have_colours_of_runs;
 use crate::look::{Labels, LineStyle, Palette, Plot, View};
-use crate::picture::caption::{self, BETWEEN_PARTS, Heading, Writer};
+use crate::picture::caption::{self, BETWEEN_PARTS, Heading, WordRoom, Writer, fitting};
 use crate::picture::chart::{event, style};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
@@ -78,13 +78,21 @@ impl<'a> Words<'a> {
         runs.iter().map(|&run| self.scene.runs.get(run).map_or("", |run| &*run.name)).collect()
     }
 
-    /// The description of the run of a panel. Among many panels, only the first one has the part that all share.
-    fn description(&self, at: usize, runs: &[usize]) -> String {
+    /// The descriptions of the runs of panels: whole, and as they are written. Among many panels, only the first one has the
+    /// part that all share.
+    pub(super) fn seconds(&self, runs: &[usize], layout: &Layout) -> [Vec<String>; 2] {
         let all: Vec<_> = runs.iter().filter_map(|&run| self.descriptions.get(run)).collect();
-        let Some(&own) = all.get(at) else { return String::new() };
         let is_shared = |part: &str| all.iter().all(|one| one.split(BETWEEN_PARTS).any(|other| other == part));
-        let differs = |part: &&str| at == 0 || all.len() < MANY || !is_shared(part);
-        own.split(BETWEEN_PARTS).filter(differs).collect::<Vec<_>>().join(BETWEEN_PARTS)
+        let differs = |at: usize, part: &str| at == 0 || all.len() < MANY || !is_shared(part);
+        let whole = all.iter().enumerate().map(|(at, own)| {
+            let parts = own.split(BETWEEN_PARTS).filter(|part| layout.written.labels.model && differs(at, part));
+            parts.collect::<Vec<_>>().join(BETWEEN_PARTS)
+        });
+        let whole: Vec<_> = whole.collect();
+        let room = layout.panels.first().map_or(0.0, |&panel| WordRoom::new(panel, layout.scale).width());
+        let size = layout.scale.caption();
+        let written = fitting(&whole, |text| self.fonts.width(text, Weight::Regular, size) <= room);
+        [whole, written]
     }
 
     /// The heading of a panel of several runs.
@@ -93,6 +101,7 @@ impl<'a> Words<'a> {
         at: usize,
         runs: &[usize],
         names: &'w [&'w str],
+        seconds: &'w [String],
         layout: &Layout,
     ) -> Heading<'w> {
         let labels = layout.written.labels;
@@ -102,8 +111,7 @@ impl<'a> Words<'a> {
             name: shown(labels.name, names.get(at).copied().unwrap_or_default()),
             names,
             sample: self.sample(runs[at], layout.parts.get(Part::Chart).is_some()),
-            second: if labels.model { self.description(at, runs) } else { String::new() },
-            descriptions: runs.iter().filter_map(|&run| self.descriptions.get(run)).map(String::as_str).collect(),
+            second: seconds.get(at).map_or("", String::as_str),
         }
     }
 
@@ -125,7 +133,8 @@ impl<'a> Words<'a> {
     fn is_crowded(&self, layout: &Layout, runs: &[usize], columns: usize) -> bool {
         let (names, at) = (self.names(runs), clock_panel(layout.panels.len(), columns));
         let Some(&panel) = layout.panels.get(at).filter(|_| at < runs.len()) else { return false };
-        let heading = self.heading(at, runs, &names, layout);
+        let [_, seconds] = self.seconds(runs, layout);
+        let heading = self.heading(at, runs, &names, &seconds, layout);
         let label = self.clock_label(layout);
         layout.written.labels.clock && self.writer(layout.scale).is_crowded(panel, &heading, label)
     }
@@ -160,11 +169,13 @@ impl<'a> Words<'a> {
                 told.push("panels do not name all possible events of the chart".to_owned());
             }
         }
-        let (names, mut shortened) = (self.names(runs), [Vec::new(), Vec::new()]);
+        let (names, [whole, seconds]) = (self.names(runs), self.seconds(runs, &layout));
+        let mut shortened = [Vec::new(), Vec::new()];
         for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
-            let heading = self.heading(at, runs, &names, &layout);
-            let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
-            for (of, is_shortened) in shortened.iter_mut().zip(writer.is_shortened(&heading, room)) {
+            let heading = self.heading(at, runs, &names, &seconds, &layout);
+            let room = WordRoom::new(panel, layout.scale).width();
+            let is_shortened = [writer.is_shortened(&heading, room), caption::lacks(&seconds[at], &whole[at])];
+            for (of, is_shortened) in shortened.iter_mut().zip(is_shortened) {
                 of.extend(is_shortened.then_some(names[at]));
             }
         }
