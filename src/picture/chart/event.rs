@@ -32,8 +32,8 @@ pub(in crate::picture) struct Event {
     pub run: usize,
     /// The time (s).
     pub time: f64,
-    /// The name, with its time and without.
-    pub words: [String; 2],
+    /// The name with its time, shorter, and without its time.
+    pub words: [String; 3],
 }
 
 /// The events in time series of a chart of a body of a size (m), up to an end (s), in the order of time.
@@ -46,7 +46,7 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
     let event = |one: &Series, time: f64, words: String, joint: &str| Event {
         run: one.run,
         time,
-        words: [format!("{words} {joint} {}", number::time(time, end)), words],
+        words: wordings(words, joint, &number::time(time, end)),
     };
     // First events of all runs come before second ones.
     let mut all: Vec<(usize, Event)> = Vec::new();
@@ -55,14 +55,23 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
         let changes: Vec<_> = one.points.windows(2).filter(|two| two[0][1] != two[1][1]).map(|two| two[1]).collect();
         if one.is_count {
             let first = changes.first().filter(|_| one.points[0][1] == 0.0);
-            own.extend(first.map(|&[time, _]| event(one, time, "first turned over".to_owned(), "at")));
+            let first = first.map(|&[time, _]| event(one, time, "first turned over".to_owned(), "at"));
             let last = changes.last().filter(|[time, _]| changes.len() > 1 && *time <= (1.0 - SETTLED) * end);
             let last = last.filter(|_| one.diverged.is_none());
-            own.extend(last.map(|&[time, count]| {
-                // Elements that are no longer turned over may be flat.
-                let words = if count == 0.0 { "none".to_owned() } else { format!("settles at {count}") };
-                event(one, time, words, "after")
-            }));
+            let time_of = |time: f64| number::time(time, end);
+            own.extend(match (first, last) {
+                (Some(first), Some(&[time, 0.0])) if time_of(first.time) == time_of(time) => {
+                    vec![event(one, first.time, "turned over briefly".to_owned(), "at")]
+                }
+                (first, last) => {
+                    let settled = last.map(|&[time, count]| {
+                        // Elements that are no longer turned over may be flat.
+                        let words = if count == 0.0 { "none".to_owned() } else { format!("settles at {count}") };
+                        event(one, time, words, "after")
+                    });
+                    first.into_iter().chain(settled).collect()
+                }
+            });
         } else if let (Some(&[_, start]), Some(&[_, last])) = (one.points.first(), one.points.last()) {
             let apart = |value: f64, other: f64| (value - other).abs();
             let extreme = one.points.iter().max_by(|a, b| apart(a[1], start).total_cmp(&apart(b[1], start)));
@@ -88,13 +97,19 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
 /// The possible events of a run of a scene, in the narrowest words.
 pub(in crate::picture) fn narrowest(plot: &Plot, scene: &Scene) -> Vec<Event> {
     let at = number::time(1e-3 * scene.duration.min(1.0), scene.duration);
-    let event =
-        |words: String, joint: &str| Event { run: 0, time: 0.0, words: [format!("{words} {joint} {at}"), words] };
+    let event = |words: String, joint: &str| Event { run: 0, time: 0.0, words: wordings(words, joint, &at) };
     if plot.diagnostic() == Some(Diagnostic::TurnedOver) {
         return vec![event("first turned over".to_owned(), "at"), event("settles at 1".to_owned(), "after")];
     }
     let extent = scene.extent();
     vec![event(format!("lowest {}", in_words(plot, 0.1 * extent, extent)), "at")]
+}
+
+/// The words of an event at a time: whole, shorter, and without the time.
+fn wordings(words: String, joint: &str, time: &str) -> [String; 3] {
+    let [whole, short] =
+        [&*words, words.strip_suffix(" turned over").unwrap_or(&words)].map(|words| format!("{words} {joint} {time}"));
+    [whole, short, words]
 }
 
 /// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly all changes, if that
@@ -122,11 +137,11 @@ impl Writer<'_> {
     /// The number of a run's events, from the first one on, whose words fit into a panel.
     pub(in crate::picture) fn explained(&self, panel: Rectangle, events: &[&Event]) -> usize {
         let room = WordRoom::new(panel, self.scale).width();
-        let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 1) <= room;
+        let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 2) <= room;
         (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
     }
 
-    /// The width of events with their words, with or without their times (px).
+    /// The width of events in one of their wordings (px).
     fn events_width<'e>(&self, events: impl Iterator<Item = &'e Event>, at: usize) -> f64 {
         let (unit, size) = (self.scale.type_unit(), self.scale.caption());
         let [beside, apart] = [NEAR, GAP].map(|length| length * unit);
@@ -152,7 +167,7 @@ impl Writer<'_> {
         let [beside, apart] = [NEAR, GAP].map(|length| length * unit);
         let wide = |words: &str| 2.0 * radius + beside + self.fonts.width(words, Weight::Regular, size);
         let width = |at: usize| self.events_width(events.iter().map(|(_, event)| *event), at);
-        let Some(at) = (0..=1).find(|&at| width(at) <= room.width()) else { return };
+        let Some(at) = (0..=2).find(|&at| width(at) <= room.width()) else { return };
         let (mut left, baseline) = (room.left, room.top + lines.events);
         let palette = self.palette;
         for (number, event) in &events {
@@ -193,6 +208,10 @@ mod tests {
         let flat = series(0, true, &[[0.0, 0.0], [0.02, 8.0], [0.1, 0.0], [3.0, 0.0]]);
         let told = words(Diagnostic::TurnedOver, &[flat]);
         assert_eq!(told, ["first turned over at 20 ms", "none after 100 ms"]);
+        // "First at 20 ms, none after 20 ms" would contradict itself.
+        let brief = series(0, true, &[[0.0, 0.0], [0.0196, 1.0], [0.0204, 0.0], [3.0, 0.0]]);
+        assert_eq!(words(Diagnostic::TurnedOver, &[brief]), ["turned over briefly at 20 ms"]);
+        assert_eq!(wordings("first turned over".to_owned(), "at", "20 ms")[1], "first at 20 ms");
         let many: Vec<_> = (0..20).map(|run| Series { run, ..springs.clone() }).collect();
         assert_eq!(words(Diagnostic::TurnedOver, &many), vec!["first turned over at 20 ms"; MOST]);
     }
