@@ -2,11 +2,12 @@
 
 use super::Item;
 use super::layout::Rectangle;
-use super::layout::steps::{CHART, GAP, HAIR};
+use super::layout::steps::{CHART, GAP, HAIR, STRONG, THIN};
 use super::narrow::narrow;
 use super::page::{Path, Pen, point};
 use super::plane::{cut, sides};
 use crate::colour::{Colour, mixed};
+use crate::look::Palette;
 use glam::DVec2;
 
 /// Width (in widths of the head) and opacity of an arrow's halo.
@@ -64,12 +65,29 @@ pub(super) fn bare(ends: [DVec2; 2], size: f64, colour: Colour) -> Item {
     Item::part("arrow", [Item::fill(Path::polygon(&corners.map(point)), colour)])
 }
 
+/// A curve through pixels whose last pieces are the head of an arrow, for type of a unit and arrows of a size.
+pub(super) fn bent(pixels: &[DVec2], head: usize, [unit, size]: [f64; 2], palette: &Palette) -> [Item; 2] {
+    let (curve, last) = pixels.split_at(pixels.len() - head);
+    let curve: Vec<_> = curve.iter().chain(&last[..head / 2]).map(|pixel| pixel.to_array()).collect();
+    let ends = [pixels[pixels.len() - 1 - head], pixels[pixels.len() - 1]];
+    let line = Item::curve(&curve, STRONG * unit, &[], palette.text);
+    [line, arrow(ends, size, palette.text, palette.background)]
+}
+
 /// An arrow for comparison with others: faintly filled, with an outline.
 pub(super) fn outlined(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 2] {
     let (corners, _) = outline(ends, HEAD * size);
     let [inside, rim] = OUTLINED.map(|strength| mixed(ground, colour, strength));
     let rim = Item::stroke(Path::polygon(&corners.map(point)), Pen::solid(narrow(HAIR * size)), rim);
     [bare(ends, size, inside), rim]
+}
+
+/// An arrow that differs from others and is as easily seen: its outline.
+pub(super) fn hollow(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> Item {
+    let (corners, _) = outline(ends, HEAD * size);
+    let path = Path::polygon(&corners.map(point));
+    let rim = Item::stroke(path.clone(), Pen::solid(narrow(2.0 * THIN * size)), colour);
+    Item::part("arrow", [rim, Item::fill(path, ground)])
 }
 
 /// The corners of an arrow with a head of a width (px): one side of the shaft, the joint, a wing, the tip and back; and

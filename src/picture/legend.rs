@@ -16,6 +16,7 @@ use crate::colour::Colour;
 use crate::look::{BODIES, View};
 use glam::DVec2;
 use std::borrow::Cow;
+use std::f64::consts::TAU;
 
 /// The least width of the bar with its name, in those of a sample.
 const BAR: f64 = 1.5;
@@ -73,8 +74,12 @@ impl Sample<'_> {
 pub(super) enum SampleKind {
     /// An arrow of a length (px), with its size relative to the reference picture.
     Arrow([f64; 2]),
+    /// A hollow arrow of a length (px), with its size.
+    Hollow([f64; 2]),
     /// The outlined arrow of another run, with its size.
     Outlined(Colour, f64),
+    /// The arc of a torque, with the size of its arrow.
+    Arc(f64),
     /// The dashed outline of a ghost.
     Ghost(Colour),
     /// Paths, each of a run in its colour.
@@ -157,8 +162,20 @@ impl Legend {
                 writer.marks.push(arrows::arrow(ends(own), size, palette.text, palette.background));
                 length = own;
             }
+            SampleKind::Hollow([own, size]) => {
+                writer.marks.push(arrows::hollow(ends(own), size, palette.text, palette.background));
+                length = own;
+            }
             SampleKind::Outlined(colour, size) => {
                 writer.marks.extend(arrows::outlined(ends(length), size, colour, palette.background));
+            }
+            SampleKind::Arc(size) => {
+                let radius = 0.5 * SHORT * unit;
+                let at = |turn: f64| DVec2::new(left + radius, middle) + radius * DVec2::from_angle(turn * TAU);
+                // Most of a turn, from below at the left.
+                let pixels: Vec<_> = (0..=24).map(|piece| at(0.4 + 0.75 * f64::from(piece) / 24.0)).collect();
+                writer.marks.extend(arrows::bent(&pixels, 8, [unit, size], palette));
+                length = 2.0 * radius;
             }
             SampleKind::Ghost(colour) => {
                 let dash = ghost::DASH.map(|length| length * unit);

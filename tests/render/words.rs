@@ -313,3 +313,33 @@ fn what_is_not_wanted_is_not_written() {
         assert!(!has(&picture), "“{words}” is there");
     }
 }
+
+/// A straight arrow would say that a torque is a force, and equal arrows that a load is a contact.
+#[test]
+fn the_key_has_a_sample_of_each_kind_of_arrow() {
+    let scene = parse(
+        "gravity = [0, -9.8, 0]
+        time = { duration = 0.1, step = 0.005 }
+        body = { lattice = { cells = [2, 2, 2], side = 0.1 }, mass = 1.0 }
+        contact = { restitution = 0.1 }
+        run = [{ model = { kind = 'shape-based', stiffness = 1e4 } }]
+        obstacle = [{ kind = 'floor' }]
+        [[load]]
+        nodes = 'top'
+        force = [0, 0, 5]
+        [[load]]
+        nodes = 'top'
+        torque = [0, 2, 0]
+        [view]
+        show = ['surfaces', 'loads', 'contacts']
+        labels = ['legend']",
+    );
+    let picture = compose(&scene, &frame(&scene, 0));
+    let named = |name: &str| picture.words.iter().any(|run| run.text.starts_with(name));
+    assert!(named("load ") && named("torque 2 N m") && named("contact force "), "{:?}", picture.words);
+    // The key lies below the panel: a straight arrow, that of the torque's arc, and a hollow one, with the ground inside.
+    let bottom = (picture.panels[0].viewport[1] + picture.panels[0].viewport[3]) as f32;
+    let arrows = || picture.marks.iter().filter(|mark| mark.shape == "arrow" && mark.rectangle[1] > bottom);
+    assert_eq!(arrows().count(), 3);
+    assert_eq!(arrows().filter(|arrow| arrow.colour == picture.palette.background).count(), 1);
+}

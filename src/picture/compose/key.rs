@@ -11,7 +11,7 @@ impl Composer<'_> {
     /// Samples of overlays and bodies with their meanings.
     pub(super) fn samples(&self, place: &KeyPlace<'_>) -> Vec<Sample<'_>> {
         let explained = overlay::all().filter(|overlay| overlay.is_explained(&self.scene.view));
-        explained.filter_map(|overlay| overlay.sample(self, place)).chain(self.samples_of_bodies()).collect()
+        explained.flat_map(|overlay| overlay.samples(self, place)).chain(self.samples_of_bodies()).collect()
     }
 
     /// A sample of each colour of bodies and regions, with their names. A single body needs none.

@@ -5,7 +5,7 @@ use crate::look::View;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::layout::steps::RING;
-use crate::picture::legend::Sample;
+use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::scene::Scene;
@@ -28,15 +28,17 @@ impl Overlay for Contacts {
         view.visible.contacts
     }
 
-    /// An arrow with its force in words.
-    fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
+    /// A hollow arrow with its force in words.
+    fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
         let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
         let force = number::round_below(place.legend.arrow_length() / length);
-        let meaning = format!("force {}", number::value(Diagnostic::ContactForce, force, composer.extent));
-        Some(place.arrow(composer, meaning, force * length))
+        let meaning = format!("contact force {}", number::value(Diagnostic::ContactForce, force, composer.extent));
+        let kind = SampleKind::Hollow([force * length, place.size(composer)]);
+        vec![Sample { names: vec![meaning.into()], kind }]
     }
 
-    /// Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. Dots lie above all arrows.
+    /// Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as loads are filled. Dots
+    /// lie above all arrows.
     fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
         let (snapshot, palette) = (&draft.run.snapshot, &draft.composer.palette);
         if !draft.scene.view.visible.contacts || draft.diverged {
@@ -50,7 +52,7 @@ impl Overlay for Contacts {
             });
             let (count, sum) = own.fold((0, DVec3::ZERO), |(count, sum), point| (count + 1, sum + point.at));
             let start = (count > 0).then(|| sum / f64::from(count))?;
-            draft.arrow([start, start + force * metres], 0.0, 1.0)
+            draft.arrow([start, start + force * metres], 0.0, 1.0, arrows::hollow)
         });
         marks.extend(farthest_first(arrows.collect()));
         let size = arrows::size(draft.element, draft.scale.unit);

@@ -20,11 +20,11 @@ impl Overlay for Displacements {
     }
 
     /// An arrow with its length in words.
-    fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
+    fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
         let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
         let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
         let meaning = format!("displacement {}", number::round_length(metres, composer.extent));
-        Some(place.arrow(composer, meaning, metres * pixels * scale))
+        vec![place.arrow(composer, meaning, metres * pixels * scale)]
     }
 
     /// The farthest first, in the colour of text as in the key: paths and fields have others. Arrows that would be specks on
@@ -39,7 +39,7 @@ impl Overlay for Displacements {
             let placement = draft.run.snapshot.placements[draft.bodies.assembly().body_of_node(bearer as usize)];
             let start = placement.place(draft.body.rest()[bearer as usize]);
             let end = start + view.arrow_scale * (draft.position[bearer as usize] - start);
-            draft.arrow([start, end], 2.0 * node, opacity)
+            draft.arrow([start, end], 2.0 * node, opacity, arrows::arrow)
         });
         marks.extend(farthest_first(arrows.collect()));
     }

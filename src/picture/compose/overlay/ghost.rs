@@ -13,6 +13,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::page::Pen;
 use crate::sim::Status;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// The opacity of the casing of outlines.
 const HALO_ALPHA: f64 = 0.65;
@@ -29,9 +30,9 @@ impl Overlay for GhostOutline {
         matches!(view.ghost, Some(Ghost::Run(_)))
     }
 
-    fn sample<'c>(&self, composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Option<Sample<'c>> {
-        let (name, colour) = look(composer)?;
-        Some(Sample { names: vec![name.into()], kind: SampleKind::Ghost(colour) })
+    fn samples<'c>(&self, composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
+        let sample = |(name, colour): (_, _)| Sample { names: vec![Cow::from(name)], kind: SampleKind::Ghost(colour) };
+        look(composer).map(sample).into_iter().collect()
     }
 
     fn draw(&self, draft: &Draft<'_>, curves: &mut Vec<Item>) {

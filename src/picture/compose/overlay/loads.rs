@@ -4,8 +4,7 @@ use super::{KeyPlace, Overlay, contacts};
 use crate::look::View;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::layout::steps::STRONG;
-use crate::picture::legend::Sample;
+use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::reading::captions::quantity;
@@ -19,8 +18,9 @@ use std::ops::Range;
 const LENGTH: [f64; 2] = [0.4, 0.12];
 /// Of a whole torque: the radius of its arc in distances of the farthest node from the axis, and the part of a turn.
 const ARC: [f64; 2] = [1.25, 0.75];
-/// Pieces of an arc.
+/// Pieces of an arc, and of its head.
 const PIECES: usize = 32;
+const HEAD: usize = 2;
 
 /// Arrows of loads.
 pub(super) struct Loads;
@@ -30,25 +30,28 @@ impl Overlay for Loads {
         view.visible.loads
     }
 
-    /// An arrow with its force or its pressure in words.
-    fn sample<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Option<Sample<'c>> {
+    /// An arrow with its force or its pressure in words, and an arc with the largest torque.
+    fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
         let pixels = place.pixels_a_metre(composer);
         let room = place.legend.arrow_length() / pixels;
         let scales = Scales::new(composer.scene);
         let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
-        let (value, metres, unit) = match (force, pressure) {
-            (Some(force), _) => (number::round_below(force), scales.newton, "N"),
-            (None, Some(pressure)) => (number::round_below(pressure), scales.pascal, scales.unit),
-            (None, None) if scales.torque == 0.0 => return None,
-            (None, None) => {
-                let meaning = format!("torque {}", quantity(scales.torque, "N m"));
-                return Some(place.arrow(composer, meaning, place.legend.arrow_length()));
-            }
+        let straight = match (force, pressure) {
+            (Some(force), _) => Some((number::round_below(force), scales.newton, "N")),
+            (None, Some(pressure)) => Some((number::round_below(pressure), scales.pascal, scales.unit)),
+            (None, None) => None,
         };
-        let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
-        let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
-        let meaning = format!("load {}{also}", quantity(value, unit));
-        Some(place.arrow(composer, meaning, value * metres * pixels))
+        let straight = straight.map(|(value, metres, unit)| {
+            let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
+            let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
+            let meaning = format!("load {}{also}", quantity(value, unit));
+            place.arrow(composer, meaning, value * metres * pixels)
+        });
+        let turning = (scales.torque > 0.0).then(|| {
+            let meaning = format!("torque {}", quantity(scales.torque, "N m"));
+            Sample { names: vec![meaning.into()], kind: SampleKind::Arc(place.size(composer)) }
+        });
+        straight.into_iter().chain(turning).collect()
     }
 
     /// A force that pushes its body ends at the middle of its nodes, and one that pulls it begins there.
@@ -68,7 +71,7 @@ impl Overlay for Loads {
                     let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
                     let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
                     let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
-                    found.extend(draft.arrow([start, start + way], 0.0, 1.0));
+                    found.extend(draft.arrow([start, start + way], 0.0, 1.0, arrows::arrow));
                 }
                 Pull::Pressure(pressure, faces) => {
                     let length = scales.pascal * pressure * share;
@@ -151,7 +154,7 @@ impl Draft<'_> {
         let faces_viewer = self.flat || self.lens.facing(at, area) > 0.0;
         let start = if length > 0.0 { at + out } else { at };
         let end = if length > 0.0 { start - out } else { start + out };
-        faces_viewer.then(|| self.arrow([start, end], 0.0, 1.0))?
+        faces_viewer.then(|| self.arrow([start, end], 0.0, 1.0, arrows::arrow))?
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.
@@ -160,12 +163,8 @@ impl Draft<'_> {
         let at = |piece: usize| middle + DQuat::from_axis_angle(axis, angle * piece as f64 / PIECES as f64) * start;
         let pixels: Vec<_> = (0..=PIECES).map(|piece| self.pixel(at(piece))).collect::<Option<_>>()?;
         let size = arrows::size(self.element, self.scale.unit);
-        let palette = &self.composer.palette;
-        let [.., before, _, end] = pixels[..] else { return None };
-        let curve: Vec<[f64; 2]> = pixels[..PIECES].iter().map(|pixel| pixel.to_array()).collect();
-        let line = Item::curve(&curve, STRONG * self.scale.unit, &[], palette.text);
-        let head = arrows::arrow([before, end], size, palette.text, palette.background);
         let (_, depth) = self.lens.project(middle)?;
-        Some([(depth, line), (depth, head)])
+        let bent = arrows::bent(&pixels, HEAD, [self.scale.unit, size], &self.composer.palette);
+        Some(bent.map(|item| (depth, item)))
     }
 }

@@ -13,12 +13,13 @@ pub(super) use displacements::bearers;
 
 use super::Composer;
 use super::draft::Draft;
+use crate::colour::Colour;
 use crate::look::View;
 use crate::picture::layout::steps::{FREE, RING};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Legend, Sample, SampleKind};
 use crate::picture::{Framing, Item, arrows};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
 pub(super) const MARKS: [&dyn Overlay; 5] =
@@ -38,9 +39,9 @@ pub(super) trait Overlay {
         false
     }
 
-    /// Its sample in the key, if it is explained.
-    fn sample<'c>(&self, _: &'c Composer<'_>, _: &KeyPlace<'_>) -> Option<Sample<'c>> {
-        None
+    /// Its samples in the key, if it is explained.
+    fn samples<'c>(&self, _: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
+        Vec::new()
     }
 
     /// Draws it over a panel.
@@ -61,22 +62,29 @@ impl KeyPlace<'_> {
         composer.pixels_a_metre(self.viewport, self.framing, self.scale)
     }
 
+    /// The size of arrows, relative to the reference picture.
+    fn size(&self, composer: &Composer<'_>) -> f64 {
+        arrows::size(self.pixels_a_metre(composer) * composer.scene.view.side, self.scale.unit)
+    }
+
     /// The sample of an arrow of a length (px).
     fn arrow<'c>(&self, composer: &Composer<'_>, meaning: String, length: f64) -> Sample<'c> {
-        let size = arrows::size(self.pixels_a_metre(composer) * composer.scene.view.side, self.scale.unit);
-        Sample { names: vec![meaning.into()], kind: SampleKind::Arrow([length, size]) }
+        Sample { names: vec![meaning.into()], kind: SampleKind::Arrow([length, self.size(composer)]) }
     }
 }
 
+/// How an arrow is drawn: from one pixel to another, with a size, in a colour on a ground.
+type Kind = fn([DVec2; 2], f64, Colour, Colour) -> Item;
+
 impl Draft<'_> {
     /// An arrow between two points (m), with its depth; `None` if it would be a speck, or is not longer than `shortest` (px).
-    fn arrow(&self, [start, end]: [DVec3; 2], shortest: f64, opacity: f64) -> Option<(f64, Item)> {
+    fn arrow(&self, [start, end]: [DVec3; 2], shortest: f64, opacity: f64, kind: Kind) -> Option<(f64, Item)> {
         let size = arrows::size(self.element, self.scale.unit);
         let (to, depth) = self.lens.project(end)?;
         let shortest = (RING * size).max(FREE).max(shortest);
         let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;
         let palette = &self.composer.palette;
-        Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(opacity * part)?))
+        Some((depth, kind(ends, size, palette.text, palette.background).faded(opacity * part)?))
     }
 }
 

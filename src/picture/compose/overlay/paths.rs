@@ -30,11 +30,11 @@ impl Overlay for Paths {
         self.is_explained(view)
     }
 
-    fn sample<'c>(&self, composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Option<Sample<'c>> {
+    fn samples<'c>(&self, composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
         let names: Vec<_> = names(&composer.scene.view).into_iter().map(Cow::from).collect();
         let colour = |series: &TimeSeries| composer.scene.runs[series.run].line(&composer.palette).colour;
         let kind = SampleKind::Path(composer.traced.iter().map(colour).collect());
-        (!names.is_empty()).then_some(Sample { names, kind })
+        if names.is_empty() { Vec::new() } else { vec![Sample { names, kind }] }
     }
 
     /// Up to the present moment, for the known part of the run's time series.
