@@ -24,7 +24,7 @@ const MOST_TICKS: usize = 4;
 /// The most numbers along an axis of displacements.
 const MOST_WAYS: usize = 9;
 /// The meaning of a band where a curve is dense.
-const BAND: [&str; 2] = ["band:", "least to most"];
+const BAND: [&str; 2] = ["filled where it", "oscillates fast"];
 
 /// What a chart shows of several runs.
 struct Quantity {
