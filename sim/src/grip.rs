@@ -124,29 +124,4 @@ impl Grip {
             (node as usize, to, speed)
         })
     }
-
-    /// Writes the positions and velocities of the nodes that are held at the end of a step.
-    pub(super) fn drag(&self, interval: Interval, memory: &[f64], position: &mut [DVec3], velocity: &mut [DVec3]) {
-        for (node, to, speed) in self.moved(interval, memory) {
-            (position[node], velocity[node]) = (to, speed);
-        }
-    }
-
-    /// Like [`Self::moved`], with the positions after a `share` of the step.
-    pub(super) fn moved_by(
-        &self,
-        interval: Interval,
-        share: f64,
-        memory: &[f64],
-    ) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
-        let left = (1.0 - share) * interval.step;
-        self.moved(interval, memory).map(move |(node, to, speed)| (node, to - speed * left, speed))
-    }
-
-    /// Writes the velocities of the nodes that are held at the end of a step, after the integrator has changed them.
-    pub(super) fn hold(&self, interval: Interval, memory: &[f64], velocity: &mut [DVec3]) {
-        for (node, _, speed) in self.moved(interval, memory) {
-            velocity[node] = speed;
-        }
-    }
 }

@@ -53,7 +53,6 @@ mod mode;
 pub mod model;
 mod motion;
 mod new_body;
-#[cfg(test)]
 mod noise;
 mod part;
 mod placement;

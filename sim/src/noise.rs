@@ -1,4 +1,4 @@
-//! Pseudo-random numbers for tests.
+//! Pseudo-random numbers, for the start of a search and for tests.
 
 use glam::DVec3;
 
@@ -11,6 +11,13 @@ impl Noise {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
+    pub(crate) fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+#[cfg(test)]
+impl Noise {
     /// From 0 to 1.
     pub(crate) fn share(&mut self) -> f64 {
         0.5 * self.next() + 0.5
@@ -19,9 +26,5 @@ impl Noise {
     /// An index of a list with so many entries.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.share() * count as f64) as usize
-    }
-
-    pub(crate) fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
     }
 }

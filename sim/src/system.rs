@@ -45,8 +45,7 @@ impl System {
     pub(super) fn unfeeling(&self, interval: Interval, constraints: &[f64]) -> Vec<bool> {
         let mut held = vec![false; self.impulses.as_ref().map_or(0, |_| self.mass.len())];
         if !held.is_empty() {
-            let grips = self.grips(constraints).flat_map(|(grip, memory)| grip.moved(interval, memory));
-            grips.for_each(|(node, ..)| held[node] = true);
+            self.held(interval, constraints).for_each(|(_, node, ..)| held[node] = true);
         }
         held
     }
@@ -153,7 +152,7 @@ impl System {
         }
         self.place_held(interval, 1.0, next);
         let mut inverse_mass: Vec<f64> = self.mass.iter().map(|mass| mass.recip()).collect();
-        self.for_each_held(interval, next, |node| inverse_mass[node] = 0.0);
+        self.held(interval, &next.memory.constraints).for_each(|(_, node, ..)| inverse_mass[node] = 0.0);
         for part in &self.parts {
             let Some(projection) = &part.projection else { continue };
             let (memory, nodes) = (part.memory.clone(), part.nodes.clone());
@@ -190,6 +189,17 @@ impl System {
             let (own, others) = rest.split_at(grip.width());
             rest = others;
             (grip, own)
+        })
+    }
+
+    /// For each node that a grip holds at the end of a step: the number of the grip, the node, its position (m) and its velocity (m/s).
+    pub(super) fn held<'a>(
+        &'a self,
+        interval: Interval,
+        memory: &'a [f64],
+    ) -> impl Iterator<Item = (usize, usize, DVec3, DVec3)> {
+        self.grips(memory).enumerate().flat_map(move |(number, (grip, memory))| {
+            grip.moved(interval, memory).map(move |(node, to, speed)| (number, node, to, speed))
         })
     }
 
@@ -230,8 +240,8 @@ impl System {
                 }
             }
         }
-        for (grip, memory) in self.grips(constraints) {
-            grip.drag(interval, memory, position, velocity);
+        for (_, node, to, speed) in self.held(interval, constraints) {
+            (position[node], velocity[node]) = (to, speed);
         }
         let Some(stage) = &self.contact else { return };
         let some = |all: &[DVec3]| stage.nodes().iter().map(|&node| all[node as usize]).collect();
@@ -249,11 +259,7 @@ impl System {
     /// Lets surfaces meet at the end of a step. `constraints` is the memory of grips in the step.
     pub(super) fn meet(&self, end: End<'_>, constraints: &[f64]) {
         let Some(stage) = &self.contact else { return };
-        let interval = end.interval;
-        let held = self
-            .grips(constraints)
-            .enumerate()
-            .flat_map(|(number, (grip, memory))| grip.moved(interval, memory).map(move |(node, ..)| [number, node]));
+        let held = self.held(end.interval, constraints).map(|(number, node, ..)| [number, node]);
         stage.resolve(end, held, &self.crew);
     }
 
@@ -261,10 +267,9 @@ impl System {
     /// the step.
     pub(super) fn place_held(&self, interval: Interval, share: f64, next: &mut State) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = next;
-        for (grip, memory) in self.grips(constraints) {
-            for (node, to, speed) in grip.moved_by(interval, share, memory) {
-                (position[node], velocity[node]) = (to, speed);
-            }
+        let left = (1.0 - share) * interval.step;
+        for (_, node, to, speed) in self.held(interval, constraints) {
+            (position[node], velocity[node]) = (to - speed * left, speed);
         }
     }
 
@@ -273,25 +278,8 @@ impl System {
         if self.impulses.is_none() {
             return;
         }
-        for (number, (grip, memory)) in self.grips(&next.memory.constraints).enumerate() {
-            for (node, at, speed) in grip.moved(interval, memory) {
-                self.feel(interval.end, Source::Grip(number), node, [at, next.velocity[node]], [at, speed]);
-            }
-        }
-    }
-
-    /// Calls `each` with the nodes that grips hold at the end of a step.
-    pub(super) fn for_each_held(&self, interval: Interval, next: &State, mut each: impl FnMut(usize)) {
-        for (grip, memory) in self.grips(&next.memory.constraints) {
-            grip.moved(interval, memory).for_each(|(node, _, _)| each(node));
-        }
-    }
-
-    /// Writes the velocities of the nodes that grips hold at the end of a step, after the integrator has changed them.
-    pub(super) fn hold(&self, interval: Interval, after: &mut State) {
-        let State { velocity, memory: Memory { constraints, .. }, .. } = after;
-        for (grip, memory) in self.grips(constraints) {
-            grip.hold(interval, memory, velocity);
+        for (number, node, at, speed) in self.held(interval, &next.memory.constraints) {
+            self.feel(interval.end, Source::Grip(number), node, [at, next.velocity[node]], [at, speed]);
         }
     }
 }

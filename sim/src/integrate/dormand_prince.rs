@@ -101,11 +101,9 @@ impl DormandPrince {
             }
             let impulses = part.system.impulses.as_ref().map(|impulses| (impulses, impulses.waiting()));
             // As if nothing held them.
-            let constraints = &next.memory.constraints;
-            part.system.grips(constraints).for_each(|(grip, memory)| {
-                let held = grip.moved(part.interval, memory).map(|(node, ..)| node);
-                held.for_each(|node| next.velocity[node] = state.velocity[node] + self.held[node] * step);
-            });
+            for (_, node, ..) in part.system.held(part.interval, &next.memory.constraints) {
+                next.velocity[node] = state.velocity[node] + self.held[node] * step;
+            }
             let has_met = part.finish_and_tell(state, next, &mut self.before_contact)?;
             if has_met
                 && searches < MOST_SEARCHES

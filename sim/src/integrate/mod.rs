@@ -211,12 +211,14 @@ impl Step<'_> {
 
     /// Writes the velocities of the nodes that kinematic constraints hold at the end of the step, after a method has changed them.
     pub fn hold(&self, next: &mut State) {
-        self.system.hold(self.interval, next);
+        for (_, node, _, speed) in self.system.held(self.interval, &next.memory.constraints) {
+            next.velocity[node] = speed;
+        }
     }
 
     /// Calls `each` with the nodes that kinematic constraints hold at the end of the step.
-    pub fn for_each_held(&self, next: &State, each: impl FnMut(usize)) {
-        self.system.for_each_held(self.interval, next, each);
+    pub fn for_each_held(&self, next: &State, mut each: impl FnMut(usize)) {
+        self.system.held(self.interval, &next.memory.constraints).for_each(|(_, node, ..)| each(node));
     }
 
     /// The elastic energy (J) of nodes at `position` (m), with the memory of models; `None` if a model has none.

@@ -16,6 +16,7 @@ use super::grip::Grip;
 use super::integrate::Integrator;
 use super::mode::Mode;
 use super::model::{ElasticModel, ForceModel, Properties, Scratch};
+use super::noise::Noise;
 use super::state::Nodes;
 use glam::DVec3;
 use std::sync::Arc;
@@ -166,15 +167,10 @@ fn most_products(corners: usize) -> usize {
 
 /// A start vector of the search, which no symmetry of a body makes normal to an eigenvector.
 fn start(body: &Body, is_free: &[bool]) -> Vec<DVec3> {
-    let mut seed = 1_u64;
-    let mut noise = || {
-        // D. Knuth's multiplier.
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise(1);
     let across = if body.dimension == Dimension::Plane { 0.0 } else { 1.0 };
     let mut vector = |&is_free: &bool| {
-        let vector = DVec3::new(noise(), noise(), across * noise());
+        let vector = noise.vector() * DVec3::new(1.0, 1.0, across);
         if is_free { vector } else { DVec3::ZERO }
     };
     is_free.iter().map(&mut vector).collect()
