@@ -1,6 +1,6 @@
 //! Kinematic constraints: nodes held and dragged.
 
-use super::nodes::{Layered, select};
+use super::nodes::select;
 use super::{KeyPath, motion};
 use crate::reading::collector::{Collector, key_path, written};
 use crate::scene::SceneBody;
@@ -45,12 +45,11 @@ pub(super) fn resolve(
 ) -> Option<Vec<SceneGrip>> {
     let mut all: Vec<SceneGrip> = Vec::new();
     let dimension = bodies.first()?.body.dimension();
-    let layered: Vec<_> = bodies.iter().map(Layered::new).collect();
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let path = key_path!["hold", at].to_vec();
         let until = typed.until.unwrap_or(f64::INFINITY);
-        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), &layered, (&path, "nodes"), report);
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&path, "nodes"), report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
             report.at(&key_path![path; "until"], message, None);
@@ -62,7 +61,7 @@ pub(super) fn resolve(
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let grab = key_path!["grab", at].to_vec();
-        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), &layered, (&grab, "nodes"), report);
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&grab, "nodes"), report);
         let path = key_path![grab; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");

@@ -1,7 +1,7 @@
 //! Loads: on which nodes and faces of which bodies they act, and when.
 
 use super::faces::{areas, faces_among, surface};
-use super::nodes::{Layered, select};
+use super::nodes::select;
 use super::vector;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, list};
@@ -59,10 +59,9 @@ pub(super) fn resolve(
     bodies: &[SceneBody],
     report: &mut Collector<'_>,
 ) -> Option<Vec<SceneLoad>> {
-    let layered: Vec<_> = bodies.iter().map(Layered::new).collect();
     let load = |(at, typed): (usize, &Option<LoadFile>)| {
         let path = key_path!["load", at];
-        let reading = Reading { typed: typed.as_ref()?, path: &path, bodies, layered: &layered };
+        let reading = Reading { typed: typed.as_ref()?, path: &path, bodies };
         let (course, kind) = (reading.course(report), reading.kind(report));
         let of_bodies = reading.on_bodies(kind?, report)?;
         Some(SceneLoad { of_bodies, course: course? })
@@ -101,7 +100,6 @@ struct Reading<'a> {
     typed: &'a LoadFile,
     path: &'a [PathPart<'a>],
     bodies: &'a [SceneBody],
-    layered: &'a [Layered<'a>],
 }
 
 impl Reading<'_> {
@@ -192,7 +190,7 @@ impl Reading<'_> {
         let key = if faces.is_some() || needs_faces.is_some() { "faces" } else { "nodes" };
         let chosen = faces.as_ref().or(nodes.as_ref()).unwrap_or(&all);
         let is_all = matches!(chosen, NodesFile::Named(name) if name == "all");
-        let selected = select(body.as_deref(), (!is_all).then_some(chosen), self.layered, (self.path, key), report)?;
+        let selected = select(body.as_deref(), (!is_all).then_some(chosen), self.bodies, (self.path, key), report)?;
         let mut of_bodies = Vec::new();
         for (body, nodes) in self.bodies.iter().zip(selected) {
             let faces = if key == "faces" { faces_among(&body.body, &nodes) } else { Vec::new() };

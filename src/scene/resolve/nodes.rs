@@ -9,30 +9,13 @@ use crate::scene::file::{NodesFile, RegionFile, Side};
 use crate::scene::summary::corners;
 use crate::sim::{Body, Dimension};
 use glam::DVec3;
-use std::cell::OnceCell;
 use std::collections::HashMap;
 
-/// A body in which nodes are selected, and its layers of nodes along each axis.
-pub(super) struct Layered<'a> {
-    body: &'a SceneBody,
-    layers: OnceCell<Vec<Layers>>,
-}
-
-impl<'a> Layered<'a> {
-    pub(super) fn new(body: &'a SceneBody) -> Self {
-        Self { body, layers: OnceCell::new() }
-    }
-
-    /// The distance (m) within which places are equal: the end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
-    pub(super) fn round_off(&self) -> f64 {
-        ROUND_OFF * self.body.body.extent()
-    }
-
-    /// The nodes that start in a place.
-    fn inside(&self, place: &Place) -> Vec<u32> {
-        let position = (0..).zip(&self.body.initial.position);
-        position.filter(|(_, at)| place.has(**at, self.round_off())).map(|(node, _)| node).collect()
-    }
+/// The distance (m) within which places are equal: the end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
+pub(super) fn round_off(body: &Body) -> f64 {
+    /// The same as a part of the body's longest side.
+    const ROUND_OFF: f64 = 1e-9;
+    ROUND_OFF * body.extent()
 }
 
 /// A ball with its centre and radius (m), or a box with its lowest and highest corner (m).
@@ -79,19 +62,19 @@ impl Place {
 /// The elements of a body with a corner on its side of a name at rest, or with all corners in its group of this name; `None` after reporting a mistake.
 pub(super) fn named_cells(
     name: &str,
-    of: &Layered<'_>,
+    of: &SceneBody,
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<u32>> {
     let nodes = named(name, std::slice::from_ref(of), path, report)?.pop()?;
-    let is_group = of.body.groups.iter().any(|group| group.name == name);
-    let mut is_chosen = vec![false; of.body.body.len()];
+    let is_group = of.groups.iter().any(|group| group.name == name);
+    let mut is_chosen = vec![false; of.body.len()];
     nodes.iter().for_each(|&node| is_chosen[node as usize] = true);
     let takes = |corners: &[u32]| {
         let mut chosen = corners.iter().map(|&node| is_chosen[node as usize]);
         if is_group { chosen.all(|is| is) } else { chosen.any(|is| is) }
     };
-    Some((0..).zip(of.body.body.elements().iter()).filter(|(_, corners)| takes(corners)).map(|(at, _)| at).collect())
+    Some((0..).zip(of.body.elements().iter()).filter(|(_, corners)| takes(corners)).map(|(at, _)| at).collect())
 }
 
 /// The selected nodes of each body, in rising order: those of the body of a `name`, or of all; all nodes unless some are typed, under a key.
@@ -99,13 +82,13 @@ pub(super) fn named_cells(
 pub(super) fn select(
     name: Option<&str>,
     typed: Option<&NodesFile>,
-    bodies: &[Layered<'_>],
+    bodies: &[SceneBody],
     (path, key): (&[PathPart<'_>], &str),
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
     let chosen = match name {
         Some(name) => {
-            let names: Vec<_> = bodies.iter().map(|one| one.body.name.as_str()).collect();
+            let names: Vec<_> = bodies.iter().map(|one| one.name.as_str()).collect();
             let body = choice::find(name, &names, &key_path![path; "body"], report)?;
             body..body + 1
         }
@@ -113,13 +96,12 @@ pub(super) fn select(
     };
     let path = key_path![path; key];
     let found = match (typed, &bodies[chosen.clone()]) {
-        (None, bodies) => bodies.iter().map(|one| (0..one.body.body.len() as u32).collect()).collect(),
-        (Some(NodesFile::List(list)), [only]) => vec![listed(list, only.body, &path, report)?],
+        (None, bodies) => bodies.iter().map(|one| (0..one.body.len() as u32).collect()).collect(),
+        (Some(NodesFile::List(list)), [only]) => vec![listed(list, only, &path, report)?],
         (Some(NodesFile::List(_)), several) => {
             let message =
                 format!("`{}` is a list of nodes, but the scene has {} bodies", written(&path), several.len());
-            let help =
-                several.first().map(|first| format!("name their body, such as body = {}", quoted(&first.body.name)));
+            let help = several.first().map(|first| format!("name their body, such as body = {}", quoted(&first.name)));
             report.at(&path, message, help);
             return None;
         }
@@ -149,16 +131,10 @@ fn listed(list: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Co
 }
 
 /// The nodes of each body: of its group with this name, or else of its side at rest.
-fn named(
-    name: &str,
-    bodies: &[Layered<'_>],
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Vec<Vec<u32>>> {
+fn named(name: &str, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<Vec<u32>>> {
     /// The most groups that are named in a message.
     const NAMED: usize = 20;
-    let bodies: Vec<_> = bodies.iter().map(|one| one.body).collect();
-    let of_body = |body: &&SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
+    let of_body = |body: &SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
     let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
     let is_flat = bodies[0].body.dimension() == Dimension::Plane;
     let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
@@ -166,7 +142,7 @@ fn named(
     let there = side.filter(is_there);
     if there.is_some() || found.iter().any(Option::is_some) {
         let of_side = |body: &SceneBody| there.map(|side| of_side(side, &body.body)).unwrap_or_default();
-        let nodes = found.into_iter().zip(&bodies).map(|(group, body)| group.unwrap_or_else(|| of_side(body)));
+        let nodes = found.into_iter().zip(bodies).map(|(group, body)| group.unwrap_or_else(|| of_side(body)));
         return Some(nodes.collect());
     }
     if side.is_some() {
@@ -204,28 +180,32 @@ fn of_side(side: Side, body: &Body) -> Vec<u32> {
     };
     let along = |node: &DVec3| node.dot(outwards);
     let most = body.rest().iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-    let close = ROUND_OFF * body.extent();
+    let close = round_off(body);
     (0..).zip(body.rest()).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
 }
 
 /// The nodes of each body that start in a region.
 fn within(
     region: &RegionFile,
-    bodies: &[Layered<'_>],
+    bodies: &[SceneBody],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
-    let dimension = bodies[0].body.body.dimension();
+    let dimension = bodies[0].body.dimension();
     let place = Place::new(region, dimension, path, report)?;
-    let nodes: Vec<Vec<u32>> = bodies.iter().map(|body| body.inside(&place)).collect();
+    let inside = |of: &SceneBody| {
+        let close = round_off(&of.body);
+        (0..).zip(&of.initial.position).filter(|(_, at)| place.has(**at, close)).map(|(node, _)| node).collect()
+    };
+    let nodes: Vec<Vec<u32>> = bodies.iter().map(inside).collect();
     if matches!(place, Place::Box(..)) {
         bodies.iter().zip(&nodes).for_each(|(body, nodes)| warn_of_rest(nodes, body, path, report));
     }
     if nodes.iter().all(Vec::is_empty) {
         let message = format!("`{}` is a region without nodes at the start", written(path));
-        let all: Vec<DVec3> = bodies.iter().flat_map(|one| &one.body.initial.position).copied().collect();
+        let all: Vec<DVec3> = bodies.iter().flat_map(|one| &one.initial.position).copied().collect();
         let start = match bodies {
-            [only] => format!("{} starts", only.body.in_words()),
+            [only] => format!("{} starts", only.in_words()),
             _ => "the bodies start".to_owned(),
         };
         report.at(path, message, format!("{start} {}", between(&all, dimension)));
@@ -234,11 +214,7 @@ fn within(
     Some(nodes)
 }
 
-/// Coordinates that are closer than this part of the body's longest side are equal.
-const ROUND_OFF: f64 = 1e-9;
-
 /// Nodes with equal coordinates along one axis at rest, such as the layers of a lattice.
-#[derive(Clone)]
 struct Layers {
     /// The layer of each node.
     of: Vec<u32>,
@@ -248,7 +224,7 @@ struct Layers {
 
 /// The layers of a body along each axis.
 fn layers_of(body: &Body) -> Vec<Layers> {
-    let close = ROUND_OFF * body.extent();
+    let close = round_off(body);
     let along = |axis: usize| {
         let at = |node: usize| body.rest()[node][axis];
         let mut order: Vec<usize> = (0..body.len()).collect();
@@ -266,9 +242,8 @@ fn layers_of(body: &Body) -> Vec<Layers> {
 /// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at
 /// another place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them
 /// along the others. Boxes around rows and corners are thin along several axes.
-fn warn_of_rest(nodes: &[u32], of: &Layered<'_>, path: &[PathPart<'_>], report: &mut Collector<'_>) {
-    let Layered { body, layers } = of;
-    let layers = layers.get_or_init(|| layers_of(&body.body));
+fn warn_of_rest(nodes: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    let layers = layers_of(&body.body);
     let (position, dimension) = (&body.initial.position, body.body.dimension());
     let taken = layers.iter().map(|layers| {
         let mut taken = vec![0; layers.sizes.len()];

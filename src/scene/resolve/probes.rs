@@ -1,7 +1,7 @@
 //! Nodes with a name, whose displacement is measured.
 
 use super::choice::check_names;
-use super::nodes::{Layered, select};
+use super::nodes::select;
 use super::{Typed, obstacles};
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::quoted;
@@ -13,7 +13,6 @@ pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Coll
     let typed = || scene.file.probe.iter().enumerate();
     let named = typed().map(|(at, probe)| (key_path!["probe", at].to_vec(), probe.as_ref().map(|one| &*one.name)));
     check_names(["probe", "probes"], named, report);
-    let layered: Vec<_> = bodies.iter().map(Layered::new).collect();
     let others = obstacles::names(scene.file);
     let places = |key: &'static str, count: usize| (0..count).map(move |at| format!("{key}[{at}]"));
     let grips: Vec<_> = places("hold", scene.file.hold.len()).chain(places("grab", scene.file.grab.len())).collect();
@@ -28,7 +27,7 @@ pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Coll
             let message = format!("{other} and a probe are called {}", quoted(&typed.name));
             report.at(&key_path![path; "name"], message, "give the probe another name");
         }
-        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), &layered, (&path, "nodes"), report)?;
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&path, "nodes"), report)?;
         Some(Probe { name: typed.name.clone(), nodes })
     };
     let all: Vec<_> = typed().map(probe).collect();

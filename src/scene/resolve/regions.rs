@@ -1,7 +1,7 @@
 //! Regions of bodies with a material of their own.
 
 use super::choice::check_names;
-use super::nodes::{Layered, Place, named_cells};
+use super::nodes::{Place, named_cells, round_off};
 use super::table::BodyTable;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
@@ -85,7 +85,7 @@ fn one(
 
 /// The cells that are chosen, in rising order.
 fn cells(typed: &NodesFile, of: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
-    let (elements, layered) = (of.body.elements(), [Layered::new(of)]);
+    let elements = of.body.elements();
     let found: Vec<u32> = match typed {
         NodesFile::List(list) => {
             if let Some((place, &cell)) = list.iter().enumerate().find(|(_, cell)| **cell as usize >= elements.len()) {
@@ -99,10 +99,10 @@ fn cells(typed: &NodesFile, of: &SceneBody, path: &[PathPart<'_>], report: &mut 
             list.dedup();
             list
         }
-        NodesFile::Named(name) => named_cells(name, &layered[0], path, report)?,
+        NodesFile::Named(name) => named_cells(name, of, path, report)?,
         NodesFile::Region(region) => {
             let place = Place::new(region, of.body.dimension(), path, report)?;
-            let close = layered[0].round_off();
+            let close = round_off(&of.body);
             let middle = |nodes: &[u32]| {
                 nodes.iter().map(|&node| of.initial.position[node as usize]).sum::<DVec3>() / nodes.len() as f64
             };
