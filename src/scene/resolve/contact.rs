@@ -228,15 +228,14 @@ pub(super) fn separate(
     }
 }
 
-/// Reports bodies that overlap or touch each other, or obstacles, at the start of a run: contact keeps surfaces apart, but cannot part
-/// them.
-pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>, report: &mut Collector<'_>) {
-    let mut found: BTreeMap<[usize; 2], Overlap> = BTreeMap::new();
+/// What overlaps or touches at the start of runs, by the places of two bodies in the scene, or of a body and an obstacle, which are
+/// numbered after bodies. Of a node and its body the body is named twice.
+fn overlaps(scene: &Scene, obstacles: &[Obstacle], contacts: &Contacts) -> BTreeMap<[usize; 2], Overlap> {
+    let mut found = BTreeMap::new();
     let mut known: BTreeSet<&[usize]> = BTreeSet::new();
     for run in scene.runs.iter().filter(|run| run.recording.is_none() && known.insert(run.of.as_slice())) {
-        let surfaces = Surfaces::new(run.bodies.bodies(), &scene.obstacles, &run.contacts(contacts));
+        let surfaces = Surfaces::new(run.bodies.bodies(), obstacles, &run.contacts(contacts));
         for overlap in surfaces.overlaps(&run.initial.position, 0.0, |_| true) {
-            // Obstacles are numbered after bodies.
             let number = |side: Side| match side {
                 Side::Body(body) => run.of[body],
                 Side::Obstacle(number) => scene.bodies.len() + number,
@@ -247,15 +246,38 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
             found.entry(overlap.of.map(number)).or_insert(own);
         }
     }
+    found
+}
+
+/// The words for all pairs but one.
+fn and_others(pairs: usize) -> String {
+    match pairs - 1 {
+        0 => String::new(),
+        1 => ", and so does another pair".to_owned(),
+        pairs => format!(", and so do {} other pairs", count(pairs as u128)),
+    }
+}
+
+/// Warns of bodies that overlap at the start of a run, where nodes alone meet obstacles.
+pub(super) fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let mut found = overlaps(scene, &[], &Contacts::default());
+    found.retain(|_, overlap| overlap.depth > 0.0);
+    let Some((&[first, second], _)) = found.first_key_value() else { return };
+    let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
+    let more = and_others(found.len());
+    let message = format!("{one} and {other} overlap at the start{more}: bodies go through each other");
+    report.warn(&typed.place(second), message, "move one of them, with `offset` or `lowest`, unless they may overlap");
+}
+
+/// Reports bodies that overlap or touch each other, or obstacles, at the start of a run: contact keeps surfaces apart, but cannot part
+/// them.
+pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let found = overlaps(scene, &scene.obstacles, contacts);
     let pairs = found.keys().filter(|of| of[1] < scene.bodies.len()).count();
     let of_bodies = found.iter().find(|(of, _)| of[1] < scene.bodies.len());
     if let Some((&[first, second], overlap)) = of_bodies {
         let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
-        let more = match pairs - 1 {
-            0 => String::new(),
-            1 => ", and so does another pair".to_owned(),
-            pairs => format!(", and so do {} other pairs", count(pairs as u128)),
-        };
+        let more = and_others(pairs);
         let Overlap { node, depth, of: [own, _] } = *overlap;
         let of_node = match own {
             Side::Body(body) if first != second => format!(" of {}", quoted(&scene.bodies[body].name)),

@@ -6,8 +6,6 @@ use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{count, ends, quoted, short};
 use crate::scene::mesh::longest;
 use crate::scene::{Run, Scene, SceneBody};
-use crate::sim::{Contacts, Overlap, Side, Surfaces};
-use std::collections::BTreeSet;
 
 /// Warns of all that is probably not meant.
 pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
@@ -17,7 +15,7 @@ pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>)
     warn_of_steps(scene, report);
     match &scene.contacts {
         Some(contacts) => super::contact::warn_of_ways(scene, contacts, report),
-        None => warn_of_overlaps(scene, typed, report),
+        None => super::contact::warn_of_overlaps(scene, typed, report),
     }
     super::contact::warn_of_breaking(scene, report);
     warn_of_braked_rotation(scene, report);
@@ -133,31 +131,6 @@ fn warn_of_braked_rotation(scene: &Scene, report: &mut Collector<'_>) {
             }
         }
     }
-}
-
-/// Warns of bodies that overlap at the start of a run.
-fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
-    let mut found = BTreeSet::new();
-    let mut known: BTreeSet<&[usize]> = BTreeSet::new();
-    let simulated = scene.runs.iter().filter(|run| run.recording.is_none());
-    for run in simulated.filter(|run| known.insert(run.of.as_slice())) {
-        let surfaces = Surfaces::new(run.bodies.bodies(), &[], &Contacts::default());
-        let deep =
-            surfaces.overlaps(&run.initial.position, 0.0, |_| true).into_iter().filter(|found| found.depth > 0.0);
-        found.extend(deep.filter_map(|Overlap { of, .. }| match of {
-            [Side::Body(one), Side::Body(other)] => Some([run.of[one], run.of[other]]),
-            _ => None,
-        }));
-    }
-    let Some(&[first, second]) = found.first() else { return };
-    let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
-    let more = match found.len() - 1 {
-        0 => String::new(),
-        1 => ", and so does another pair".to_owned(),
-        pairs => format!(", and so do {} other pairs", count(pairs as u128)),
-    };
-    let message = format!("{one} and {other} overlap at the start{more}: bodies go through each other");
-    report.warn(&typed.place(second), message, "move one of them, with `offset` or `lowest`, unless they may overlap");
 }
 
 /// Warns of sizes far from metres, unless a `scale` is given, and of recordings of another size.
