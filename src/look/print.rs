@@ -11,8 +11,8 @@ const INCH_POINTS: f64 = 72.0;
 const MOST_PIXELS: f64 = 16384.0;
 /// The usual type of a picture (px at the reference size).
 const TYPE: f64 = 16.0;
-/// The range of scales of type.
-const SCALES: [f64; 2] = [0.5, 3.0];
+/// The range of scales of type in points: small pictures have large type.
+const SCALES: [f64; 2] = [0.5, 4.0];
 
 /// The size of a picture as typed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -135,10 +135,22 @@ pub(crate) fn unit(size: [u32; 2], panel: [u32; 2]) -> f64 {
     (f64::from(size[1]) / HEIGHT).min(width / PANEL[0]).min(height / PANEL[1])
 }
 
-/// Pixels per pixel of the reference picture, for a sheet; one at 1600 × 900. Smaller sheets have fewer parts, not
-/// smaller type.
+/// Pixels per pixel of the reference picture, for a sheet; one at 1600 × 900. It follows the root of the area, and in tall sheets the
+/// width. Smaller sheets have fewer parts, not smaller type.
 pub(crate) fn unit_of_sheet([width, height]: [u32; 2]) -> f64 {
     const SIZE: [f64; 2] = [1600.0, 900.0];
     const LEAST: f64 = 0.36;
-    (f64::from(width) / SIZE[0]).min(f64::from(height) / SIZE[1]).max(LEAST)
+    let [wide, high] = [f64::from(width) / SIZE[0], f64::from(height) / SIZE[1]];
+    wide.min(libm::sqrt(wide * high)).max(LEAST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit_of_sheet;
+
+    #[test]
+    fn type_of_sheets_follows_the_area_but_no_narrow_one_has_wide_type() {
+        assert_eq!([[1600, 900], [3200, 1800], [1600, 1800]].map(unit_of_sheet), [1.0, 2.0, 1.0]);
+        assert_eq!(unit_of_sheet([1600, 400]), 2.0 / 3.0);
+    }
 }
