@@ -160,11 +160,14 @@ impl Tally {
             return None;
         }
         let gap: f64 = if rows > 3.0 || columns > 14.0 { STRONG } else { FREE };
-        let room = (room / scale.type_unit()).min(5.0 * MARGIN);
-        let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(TEXT);
-        let pixels = side * scale.type_unit();
+        let unit = scale.type_unit();
+        let wide = (room / unit).min(5.0 * MARGIN);
+        let side = ((HEIGHT + gap) / rows - gap).min((wide + gap) / columns - gap).min(TEXT);
         // Whole pixels keep all squares alike.
-        (side >= TICK && pixels >= 2.0).then(|| [pixels.round(), (gap * scale.type_unit()).round().max(1.0)])
+        let (pixels, gap) = ((side * unit).round(), (gap * unit).round().max(1.0));
+        let fits = |pixels: &f64| *pixels >= 2.0 && columns * (pixels + gap) - gap <= room;
+        let pixels = [pixels, pixels - 1.0].into_iter().find(fits)?;
+        (side >= TICK).then_some([pixels, gap])
     }
 
     fn draw_squares(
@@ -270,4 +273,25 @@ pub(in crate::picture) fn struck(rectangle: [f64; 4], palette: &Palette) -> Item
     let line = [[width - x, 0.0], [width, 0.0], [width, y], [x, height], [0.0, height], [0.0, height - y]];
     let path = Path::polygon(&line.map(|[x, y]| point([left + x, top + y].into())));
     Item::part("struck", [Item::rectangle(rectangle, palette.alarm), Item::fill(path, palette.alarm_line)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole pixels must not be more than there is room for: squares ran into the number beside them.
+    #[test]
+    fn squares_keep_to_their_room() {
+        for columns in 1..=MOST_SQUARES {
+            let block = BodyTally { elements: 0..columns, rows: vec![(0..columns).collect()], are_layers: true };
+            let tally = Tally { blocks: vec![block], count: columns, dimension: Dimension::Space };
+            for (room, unit) in
+                (20..200).step_by(7).flat_map(|room| [0.6, 0.86, 1.0, 1.4].map(|unit| (f64::from(room), unit)))
+            {
+                let scale = Scale { unit, ..Scale::REFERENCE };
+                let width = tally.width(scale, room);
+                assert!(width <= room, "{columns} squares take {width} of {room} px");
+            }
+        }
+    }
 }
