@@ -13,27 +13,22 @@ pub(crate) struct EdgeUse {
 impl EdgeUse {
     /// All uses, by edge and then by triangle.
     pub(crate) fn all(triangles: &[[u32; 3]]) -> Vec<Self> {
-        let of = |(triangle, &[a, b, c]): (u32, &[u32; 3])| {
-            [(a, b), (b, c), (c, a)].map(|(from, to)| Self {
-                low: from.min(to),
-                high: from.max(to),
-                triangle,
-                forward: from < to,
-            })
-        };
-        let uses: Vec<_> = (0..).zip(triangles).flat_map(of).collect();
+        let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
         // Most points are the lower ends of few edges, so that little is left to sort.
-        let points = uses.iter().map(|one| one.low as usize + 1).max().unwrap_or(0);
+        let points = triangles.as_flattened().iter().max().map_or(0, |&most| most as usize + 1);
         let mut next = vec![0; points + 1];
-        uses.iter().for_each(|one| next[one.low as usize + 1] += 1);
+        triangles.iter().flat_map(sides).for_each(|(from, to)| next[from.min(to) as usize + 1] += 1);
         (0..points).for_each(|point| next[point + 1] += next[point]);
-        let mut sorted = uses.clone();
-        for one in uses {
-            let place = &mut next[one.low as usize];
-            sorted[*place] = one;
-            *place += 1;
+        let mut sorted = vec![Self { low: 0, high: 0, triangle: 0, forward: false }; 3 * triangles.len()];
+        for (triangle, of) in (0..).zip(triangles) {
+            for (from, to) in sides(of) {
+                let place = &mut next[from.min(to) as usize];
+                sorted[*place] = Self { low: from.min(to), high: from.max(to), triangle, forward: from < to };
+                *place += 1;
+            }
         }
-        sorted.chunk_by_mut(|one, other| one.low == other.low).for_each(<[Self]>::sort_unstable);
+        let key = |one: &Self| (u64::from(one.high) << 32 | u64::from(one.triangle), one.forward);
+        sorted.chunk_by_mut(|one, other| one.low == other.low).for_each(|of| of.sort_unstable_by_key(key));
         sorted
     }
 

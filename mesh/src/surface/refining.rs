@@ -14,32 +14,36 @@ impl Surface {
         let needed: f64 = self.triangles.iter().map(parts).sum();
         // Not true for a length of zero or one that is no number, either.
         let fits = needed <= 16.0 * most as f64 + 8.0 * self.triangles.len() as f64;
-        let is_long = |&of: &[u32; 3]| {
-            let [a, b, c] = self.corners(of);
-            [a.distance(b), b.distance(c), c.distance(a)].into_iter().any(|length| length > longest)
-        };
-        if fits && self.triangles.iter().any(is_long) {
-            while self.halve(longest) {}
-        }
+        while fits && self.halve(longest) {}
     }
 
     /// Divides longer edges in halves, and returns whether there were some.
     fn halve(&mut self, longest: f64) -> bool {
+        let is_long = |&at: &usize| {
+            let [a, b, c] = self.corners(self.triangles[at]);
+            [a.distance(b), b.distance(c), c.distance(a)].into_iter().any(|length| length > longest)
+        };
+        // Triangles that share a longer edge all have one, and mostly few are left after the first times.
+        let long: Vec<usize> = (0..self.triangles.len()).filter(is_long).collect();
+        let of_long: Vec<[u32; 3]> = long.iter().map(|&at| self.triangles[at]).collect();
+        if long.is_empty() {
+            return false;
+        }
         let mut middles = vec![[None; 3]; self.triangles.len()];
         // The groups of each point, to which the middle between two of their points belongs, too.
         let mut groups_of = vec![Vec::new(); self.points.len()];
         for (group, at) in self.groups.iter().zip(0u32..) {
             group.points.iter().for_each(|&point| groups_of[point as usize].push(at));
         }
-        for edge in EdgeUse::all(&self.triangles).chunk_by(EdgeUse::same) {
+        for edge in EdgeUse::all(&of_long).chunk_by(EdgeUse::same) {
             let [low, high] = [edge[0].low, edge[0].high].map(|point| self.points[point as usize]);
             let middle = low.midpoint(high);
             // An edge as short as round-off has no middle.
             if low.distance(high) > longest && middle != low && middle != high {
                 for one in edge {
                     let from = if one.forward { one.low } else { one.high };
-                    let place = self.triangles[one.triangle as usize].iter().position(|&corner| corner == from);
-                    middles[one.triangle as usize][place.unwrap_or(0)] = Some(self.points.len() as u32);
+                    let place = of_long[one.triangle as usize].iter().position(|&corner| corner == from);
+                    middles[long[one.triangle as usize]][place.unwrap_or(0)] = Some(self.points.len() as u32);
                 }
                 // Of two rising lists, the shorter one is gone through: a point in the middle of a fan may have very many groups.
                 let [mut fewer, mut more] = [edge[0].low, edge[0].high].map(|point| &groups_of[point as usize]);
