@@ -7,11 +7,11 @@
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::{Draft, Drafting};
 use super::lattice::too_many;
-use super::tighten::{cosines, tightened};
+use super::tighten::{Near, cosines};
 use super::{FillError, Filled, embed};
 use crate::{Flaws, Surface};
 use glam::{DVec3, IVec3};
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
 /// A point of the lattice is moved to a cut of one of its edges that is nearer than this part of the edge: for edges along the axes
 /// and for the shorter others. Angles are bounded as stated for any cuts and moves of the corners of a tetrahedron, as a search
@@ -39,15 +39,17 @@ pub(super) fn fill(surface: Surface, flaws: Flaws, side: f64, most: usize) -> Re
 fn of_lattice(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Option<Filled>, FillError> {
     let lattice = Lattice::around(&mut surface, side, true, most)?;
     let truly_inside = lattice.inside();
-    let is_far = Cell::new(false);
+    let (is_far, near) = (Cell::new(false), OnceCell::new());
     let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |wide, is_bold, _| {
         let is_inside: Vec<bool> = truly_inside.iter().zip(wide).map(|(inside, wide)| *inside || *wide > 0).collect();
         let cuts = lattice.cuts(&is_inside, |point| wide[point] > 0 && !truly_inside[point]);
         let found = Stuffing::new(&lattice, &is_inside, cuts).draft(wide, most);
         let mut draft = found.map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))?;
-        is_far.set(draft.is_wide.contains(&true) && tightened(&mut draft, &surface, &lattice, is_bold));
+        let near = || near.get_or_init(|| Near::new(&surface, &lattice));
+        is_far.set(draft.is_wide.contains(&true) && near().tighten(&mut draft, is_bold));
         Ok(draft)
     })?;
+    drop(near);
     Ok((!is_far.get()).then_some(Filled { cage, surface, weights, flaws }))
 }
 

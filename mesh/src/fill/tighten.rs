@@ -32,14 +32,14 @@ const SMALL: f64 = 0.04;
 const SLIGHT: f64 = 1e-3;
 
 /// Triangles of a surface by their place.
-struct Near<'s> {
+pub(super) struct Near<'s> {
     surface: &'s Surface,
     lattice: &'s Lattice,
     boxes: Boxes,
 }
 
 impl<'s> Near<'s> {
-    fn new(surface: &'s Surface, lattice: &'s Lattice) -> Self {
+    pub(super) fn new(surface: &'s Surface, lattice: &'s Lattice) -> Self {
         let boxes = surface.triangles.iter().map(|&of| bounds(&surface.corners(of))).collect();
         Self { surface, lattice, boxes: Boxes::new(boxes, bounds(&surface.points), lattice.side) }
     }
@@ -58,7 +58,11 @@ impl<'s> Near<'s> {
     fn passes(&self, corners: [DVec3; 4]) -> bool {
         let (low, high) = bounds(&corners);
         let reaches_in = |triangle: u32| {
-            let mut polygon = self.corners(triangle).map(|corner| weights(corners, corner)).to_vec();
+            let all = self.corners(triangle).map(|corner| weights(corners, corner));
+            if (0..4).any(|side| all.iter().all(|at| at[side] < 0.5 * SLIGHT)) {
+                return false;
+            }
+            let mut polygon = all.to_vec();
             for side in 0..4 {
                 let above = |at: &[f64; 4]| at[side] - SLIGHT;
                 let mut kept = Vec::with_capacity(polygon.len() + 1);
@@ -81,25 +85,29 @@ impl<'s> Near<'s> {
     }
 }
 
-/// Draws the nodes of wide tetrahedra to the surface as far as angles allow, and leaves out those that are beside it. If `is_bold`,
-/// those whose nodes stay far from it are left out, too. Returns whether some are left.
-pub(super) fn tightened(draft: &mut Draft, surface: &Surface, lattice: &Lattice, is_bold: bool) -> bool {
-    let near = Near::new(surface, lattice);
-    near.leave_out(draft, &[]);
-    let far = near.draw(draft);
-    draft.is_bold = is_bold && !far.is_empty();
-    near.leave_out(draft, if is_bold { &far } else { &[] });
-    draft.cage.elements.indices().iter().any(|&node| far.binary_search(&(node as usize)).is_ok())
-}
-
 impl Near<'_> {
-    /// Leaves out wide elements without a part inside, and those with one of some nodes, in rising order.
-    fn leave_out(&self, draft: &mut Draft, nodes: &[usize]) {
+    /// Draws the nodes of wide tetrahedra to the surface as far as angles allow, and leaves out those that are beside it. If `is_bold`,
+    /// those whose nodes stay far from it are left out, too. Returns whether some are left.
+    pub(super) fn tighten(&self, draft: &mut Draft, is_bold: bool) -> bool {
+        self.leave_out(draft, &[], &[]);
+        let before = draft.cage.nodes.clone();
+        let far = self.draw(draft);
+        draft.is_bold = is_bold && !far.is_empty();
+        self.leave_out(draft, if is_bold { &far } else { &[] }, &before);
+        draft.cage.elements.indices().iter().any(|&node| far.binary_search(&(node as usize)).is_ok())
+    }
+
+    /// Leaves out wide elements without a part inside, and those with one of some nodes, in rising order. Those whose nodes are where
+    /// they were `before` are known to have a part inside.
+    fn leave_out(&self, draft: &mut Draft, nodes: &[usize], before: &[DVec3]) {
         let Draft { cage, is_wide, .. } = draft;
+        let is_moved = |node: u32| before.get(node as usize) != Some(&cage.nodes[node as usize]);
         let is_kept = |element: usize| {
             let of: &[u32] = &cage.elements[element];
             let corners = [0, 1, 2, 3].map(|at| cage.nodes[of[at] as usize]);
-            let has_inside = || self.passes(corners) || self.lattice.contains(0.25 * corners.iter().sum::<DVec3>());
+            let is_known = || !of.iter().any(|&node| is_moved(node));
+            let has_inside =
+                || is_known() || self.passes(corners) || self.lattice.contains(0.25 * corners.iter().sum::<DVec3>());
             !is_wide[element] || of.iter().all(|&node| nodes.binary_search(&(node as usize)).is_err()) && has_inside()
         };
         let kept: Vec<bool> = (0..is_wide.len()).into_par_iter().map(is_kept).collect();
