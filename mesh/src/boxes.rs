@@ -1,6 +1,7 @@
 //! Boxes by their places.
 
 use glam::{DVec3, I64Vec3};
+use std::ops::Range;
 
 /// Boxes with their lowest and highest corners, and cells of space with those that meet each, in rising order.
 pub(crate) struct Boxes {
@@ -40,8 +41,7 @@ impl Boxes {
     /// Calls `visit` with each box and each cell that it meets.
     fn visit(&self, mut visit: impl FnMut(usize, u32)) {
         for (item, &(low, high)) in (0..).zip(&self.all) {
-            let cells = self.cells(self.cell(low), self.cell(high));
-            cells.filter_map(|cell| self.index(cell)).for_each(|cell| visit(cell, item));
+            self.rows(low, high).flatten().for_each(|cell| visit(cell, item));
         }
     }
 
@@ -62,8 +62,8 @@ impl Boxes {
 
     /// The boxes that meet a box; some of them several times.
     pub(crate) fn within(&self, low: DVec3, high: DVec3) -> impl Iterator<Item = u32> {
-        let cells = self.cells(self.cell(low), self.cell(high));
-        cells.flat_map(|cell| self.at(cell)).copied().filter(move |&item| self.meet(item, (low, high)))
+        let rows = self.rows(low, high).flat_map(|row| &self.items[self.starts[row.start]..self.starts[row.end]]);
+        rows.copied().filter(move |&item| self.meet(item, (low, high)))
     }
 
     /// The nearest of the triangles in the boxes to a point, and its distance, up to a greatest one.
@@ -75,14 +75,20 @@ impl Boxes {
             if nearest <= (ring - 1) as f64 * self.cell {
                 break;
             }
-            for &item in self.ring(cell, ring).flat_map(|at| self.at(at)) {
-                let (low, high) = self.all[item as usize];
-                if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
+            for at in self.ring(cell, ring) {
+                // Most cells beside that of the point are farther away than what is there.
+                if self.gap(at, point) > nearest {
                     continue;
                 }
-                let distance = point.distance(nearest_of(corners(item), point));
-                if distance < nearest || (distance == nearest && best.is_none_or(|best| item < best)) {
-                    (best, nearest) = (Some(item), distance);
+                for &item in self.at(at) {
+                    let (low, high) = self.all[item as usize];
+                    if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
+                        continue;
+                    }
+                    let distance = point.distance(nearest_of(corners(item), point));
+                    if distance < nearest || (distance == nearest && best.is_none_or(|best| item < best)) {
+                        (best, nearest) = (Some(item), distance);
+                    }
                 }
             }
         }
@@ -94,6 +100,11 @@ impl Boxes {
         ((point - self.low) / self.cell).floor().clamp(DVec3::splat(-1e9), DVec3::splat(1e9)).as_i64vec3()
     }
 
+    /// The cell of a point by its place in lists, if there is one.
+    pub(crate) fn place(&self, point: DVec3) -> Option<usize> {
+        self.index(self.cell(point))
+    }
+
     fn index(&self, cell: I64Vec3) -> Option<usize> {
         let is_in = cell.cmpge(I64Vec3::ZERO).all() && cell.cmplt(self.counts).all();
         is_in.then(|| ((cell.z * self.counts.y + cell.y) * self.counts.x + cell.x) as usize)
@@ -103,10 +114,19 @@ impl Boxes {
         self.index(cell).map_or(&[], |cell| &self.items[self.starts[cell]..self.starts[cell + 1]])
     }
 
-    /// The cells of a box of cells.
-    fn cells(&self, low: I64Vec3, high: I64Vec3) -> impl Iterator<Item = I64Vec3> + use<> {
+    /// The cells that a box meets, by their places in lists: those beside each other along x together.
+    fn rows(&self, low: DVec3, high: DVec3) -> impl Iterator<Item = Range<usize>> + use<> {
+        let (low, high) = (self.cell(low).max(I64Vec3::ZERO), self.cell(high).min(self.counts - 1));
+        let (counts, length) = (self.counts, high.x - low.x + 1);
         let rows = (low.z..=high.z).flat_map(move |z| (low.y..=high.y).map(move |y| [y, z]));
-        rows.flat_map(move |[y, z]| (low.x..=high.x).map(move |x| I64Vec3::new(x, y, z)))
+        let first = move |[y, z]: [i64; 2]| ((z * counts.y + y) * counts.x + low.x) as usize;
+        rows.filter(move |_| length > 0).map(first).map(move |first| first..first + length as usize)
+    }
+
+    /// How far a cell is from a point, less what round-off may add.
+    fn gap(&self, cell: I64Vec3, point: DVec3) -> f64 {
+        let (at, low) = ((point - self.low) / self.cell, cell.as_dvec3());
+        self.cell * (at.distance(at.clamp(low, low + 1.0)) - 1e-6)
     }
 
     /// The cells that are so many cells away along an axis, and no farther along others.

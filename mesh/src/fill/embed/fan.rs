@@ -119,7 +119,7 @@ impl Fan {
         let elements = Boxes::new((0..self.starts.len() - 1).into_par_iter().map(box_of).collect(), ends, side);
         let outside = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
         let faces = Boxes::new(outside, ends, side);
-        let locate = |&point: &DVec3| {
+        let locate = |point: DVec3| {
             let containing = elements.around(point).find_map(|element| {
                 self.of(element as usize).iter().find_map(|simplex| {
                     let weights = weights(self.corners(simplex), point);
@@ -138,7 +138,13 @@ impl Fan {
             let weights = weights(self.corners(&simplex), point);
             Some(Place { element: simplex.element, corners: simplex.corners, weights, distance: distance / side })
         };
-        points.par_iter().map(locate).collect()
+        // Points of one cell are close to the same elements, which are fast to get at one after the other.
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.par_sort_by_cached_key(|&at| elements.place(points[at]));
+        let found: Vec<_> = order.par_iter().map(|&at| locate(points[at])).collect();
+        let mut places = vec![None; points.len()];
+        order.into_iter().zip(found).for_each(|(at, place)| places[at] = place);
+        places
     }
 }
 
