@@ -4,6 +4,7 @@ use super::facet::Facet;
 use super::union::Tangle;
 use crate::edges::Sets;
 use glam::DVec3;
+use std::ops::Range;
 
 /// What sees what in a cell.
 pub(super) struct Sight<'f> {
@@ -31,6 +32,7 @@ const NEAR: f64 = 1e-9;
 /// Places of points along each side of a cell that look for patches. Those beside faces stand for them. The second one is not in the
 /// middle, where points of symmetric surfaces are: round-off lets a line through a point pass between its triangles.
 const LOOKOUTS: [f64; 3] = [1e-3, 0.4871, 1.0 - 1e-3];
+const PLACES: usize = LOOKOUTS.len().pow(3);
 /// Those beside the middles of faces: low and high along x, y and z.
 const FACES: [usize; 6] = [12, 14, 10, 16, 4, 22];
 /// From so many pieces of a patch it is looked inwards.
@@ -49,7 +51,7 @@ impl<'f> Sight<'f> {
     /// About how often a line is tried with a facet to find the parts that so many patches bound.
     pub(super) fn effort(facets: usize, patches: usize) -> f64 {
         let (facets, patches) = (facets as f64, patches as f64);
-        facets * (LOOKS as f64 * patches + 27.0 * patches + 0.5 * patches * patches)
+        facets * (LOOKS as f64 * patches + PLACES as f64 * patches + 0.5 * patches * patches)
     }
 
     /// The nearest facet along a line, up to its end, apart from one.
@@ -75,90 +77,137 @@ impl<'f> Sight<'f> {
 
     /// The parts that so many patches bound.
     pub(super) fn parts(&self, patches: usize) -> Seen {
-        let is_seen = |&at: &usize| self.is_seen[at];
-        // The largest piece of each patch, or of those that are seen.
+        let mut search = Search::new(self, patches);
+        search.look_inwards();
+        // Patches that are not seen, and see others, are looked from only where there may be several parts.
+        for places in [0..PLACES, PLACES..search.lookouts.len()] {
+            search.look_around(places.clone());
+            search.join_lookouts(places);
+            if search.is_one() {
+                return Seen { part_of: vec![0; self.facets.len()], count: 1, faces: [Some(0); 6] };
+            }
+        }
+        search.join_hidden();
+        search.seen()
+    }
+}
+
+/// What is known so far of the parts that patches bound.
+struct Search<'s, 'f> {
+    sight: &'s Sight<'f>,
+    patches: usize,
+    /// The largest piece of each patch, or of its pieces that are seen: of patches that are seen, and of others.
+    targets: Vec<usize>,
+    hidden: Vec<usize>,
+    /// Lookouts, at last those on patches that are not seen, which are inside.
+    lookouts: Vec<DVec3>,
+    is_inside: Vec<bool>,
+    /// What bounds or sees one part: patches, then lookouts.
+    sets: Sets,
+}
+
+impl<'s, 'f> Search<'s, 'f> {
+    fn new(sight: &'s Sight<'f>, patches: usize) -> Self {
         let mut largest = vec![None::<usize>; patches];
-        let mut sizes = vec![0usize; patches];
-        for (at, (facet, &patch)) in self.facets.iter().zip(self.patch_of).enumerate() {
-            sizes[patch as usize] += 1;
+        let rank = |at: usize| (sight.is_seen[at], sight.facets[at].area);
+        for (at, &patch) in sight.patch_of.iter().enumerate() {
             let best = &mut largest[patch as usize];
-            if best.is_none_or(|best| (is_seen(&at), facet.area) > (is_seen(&best), self.facets[best].area)) {
+            if best.is_none_or(|best| rank(at) > rank(best)) {
                 *best = Some(at);
             }
         }
-        let (targets, hidden): (Vec<usize>, Vec<usize>) = largest.iter().flatten().copied().partition(is_seen);
-        // Lookouts, at last those on patches that are not seen, which are inside.
-        let places = (0..27).map(|at| self.low + DVec3::new(LOOKOUTS[at % 3], LOOKOUTS[at / 3 % 3], LOOKOUTS[at / 9]));
-        let lookouts: Vec<DVec3> = places.chain(hidden.iter().map(|&at| self.facets[at].middle)).collect();
-        // Patches, then lookouts.
+        let (targets, hidden): (Vec<_>, Vec<_>) = largest.into_iter().flatten().partition(|&at| sight.is_seen[at]);
+        let places = (0..PLACES).map(|at| DVec3::new(LOOKOUTS[at % 3], LOOKOUTS[at / 3 % 3], LOOKOUTS[at / 9]));
+        let places = places.map(|place| sight.low + place);
+        let lookouts: Vec<DVec3> = places.chain(hidden.iter().map(|&at| sight.facets[at].middle)).collect();
         let mut sets = Sets::new(patches + lookouts.len());
-        for &[one, other] in self.tangle.iter().flat_map(|tangle| &tangle.joined) {
-            sets.join(self.patch_of[one], self.patch_of[other]);
+        for &[one, other] in sight.tangle.iter().flat_map(|tangle| &tangle.joined) {
+            sets.join(sight.patch_of[one], sight.patch_of[other]);
         }
-        for (&at, place) in hidden.iter().zip(patches as u32 + 27..) {
-            sets.join(self.patch_of[at], place);
+        for (&at, place) in hidden.iter().zip((patches + PLACES) as u32..) {
+            sets.join(sight.patch_of[at], place);
         }
-        let mut seen = vec![0usize; patches];
-        for (at, (facet, &patch)) in self.facets.iter().zip(self.patch_of).enumerate() {
-            let number = &mut seen[patch as usize];
-            let stride = sizes[patch as usize].div_ceil(LOOKS);
-            *number += 1;
-            if !is_seen(&at) || (!(*number - 1).is_multiple_of(stride) && largest[patch as usize] != Some(at)) {
+        let is_inside = vec![false; lookouts.len()];
+        Self { sight, patches, targets, hidden, lookouts, is_inside, sets }
+    }
+
+    /// Joins patches with those that some of their pieces see inwards.
+    fn look_inwards(&mut self) {
+        let Sight { facets, patch_of, is_seen, .. } = self.sight;
+        let mut sizes = vec![0usize; self.patches];
+        patch_of.iter().for_each(|&patch| sizes[patch as usize] += 1);
+        let mut numbers = vec![0usize; self.patches];
+        for (at, (facet, &patch)) in facets.iter().zip(*patch_of).enumerate() {
+            let number = numbers[patch as usize];
+            numbers[patch as usize] += 1;
+            let is_chosen = number.is_multiple_of(sizes[patch as usize].div_ceil(LOOKS)) || self.targets.contains(&at);
+            if !is_seen[at] || !is_chosen {
                 continue;
             }
-            let along = self.to_side(facet.middle, -facet.normal);
+            let along = self.sight.to_side(facet.middle, -facet.normal);
             if along.length_squared() > 0.0
-                && let Some(hit) = self.first(facet.middle, along, at)
+                && let Some(hit) = self.sight.first(facet.middle, along, at)
             {
-                sets.join(patch, self.patch_of[hit]);
+                self.sets.join(patch, patch_of[hit]);
             }
         }
-        let mut is_inside = vec![false; lookouts.len()];
-        let mut start = 0;
-        // Patches that are not seen, and see others, are looked from only where there may be several parts.
-        for end in [27, lookouts.len()] {
-            for (place, &from) in lookouts.iter().enumerate().take(end).skip(start) {
-                let sights: Vec<usize> = targets
-                    .iter()
-                    .filter_map(|&target| self.first(from, self.facets[target].middle - from, usize::MAX))
-                    .collect();
-                // A facet seen from behind is seen through the inside.
-                is_inside[place] = place >= 27
-                    || sights.iter().any(|&hit| self.facets[hit].normal.dot(self.facets[hit].corners[0] - from) > 0.0);
-                if is_inside[place] {
-                    sights.iter().for_each(|&hit| sets.join((patches + place) as u32, self.patch_of[hit]));
-                }
+    }
+
+    /// Tells which of some lookouts are inside, and joins these with the patches that they see.
+    fn look_around(&mut self, places: Range<usize>) {
+        let Sight { facets, patch_of, .. } = self.sight;
+        for place in places {
+            let from = self.lookouts[place];
+            let towards = |&target: &usize| self.sight.first(from, facets[target].middle - from, usize::MAX);
+            let sights: Vec<usize> = self.targets.iter().filter_map(towards).collect();
+            // A facet seen from behind is seen through the inside.
+            let is_behind = |&hit: &usize| facets[hit].normal.dot(facets[hit].corners[0] - from) > 0.0;
+            self.is_inside[place] = place >= PLACES || sights.iter().any(is_behind);
+            if self.is_inside[place] {
+                sights.iter().for_each(|&hit| self.sets.join((self.patches + place) as u32, patch_of[hit]));
             }
-            for one in start..end {
-                for other in 0..one {
-                    let both = is_inside[one] && is_inside[other];
-                    let [a, b] = [one, other].map(|place| (patches + place) as u32);
-                    if both && sets.of(a) != sets.of(b) {
-                        let along = lookouts[other] - lookouts[one];
-                        if self.first(lookouts[one], along, usize::MAX).is_none() {
-                            sets.join(a, b);
-                        }
+        }
+    }
+
+    /// Joins some lookouts with those before them that they see, if both are inside.
+    fn join_lookouts(&mut self, places: Range<usize>) {
+        for one in places {
+            for other in (0..one).filter(|&other| self.is_inside[one] && self.is_inside[other]) {
+                let [a, b] = [one, other].map(|place| (self.patches + place) as u32);
+                if self.sets.of(a) != self.sets.of(b) {
+                    let (from, to) = (self.lookouts[one], self.lookouts[other]);
+                    if self.sight.first(from, to - from, usize::MAX).is_none() {
+                        self.sets.join(a, b);
                     }
                 }
             }
-            let mut parts = targets.iter().map(|&target| sets.of(self.patch_of[target]));
-            let first = parts.next();
-            if parts.all(|part| Some(part) == first) {
-                return Seen { part_of: vec![0; self.facets.len()], count: 1, faces: [Some(0); 6] };
-            }
-            start = end;
         }
-        // A patch from which nothing is seen is in the midst of a part.
-        for &at in &hidden {
-            let own = sets.of(self.patch_of[at]);
-            if !targets.iter().any(|&target| sets.of(self.patch_of[target]) == own) {
-                sets.join(own, self.patch_of[*targets.first().unwrap_or(&hidden[0])]);
+    }
+
+    /// Whether all patches that are seen bound one part.
+    fn is_one(&mut self) -> bool {
+        let mut parts = self.targets.iter().map(|&target| self.sets.of(self.sight.patch_of[target]));
+        let first = parts.next();
+        parts.all(|part| Some(part) == first)
+    }
+
+    /// Joins patches from which nothing is seen, which are in the midst of a part, with the first part.
+    fn join_hidden(&mut self) {
+        let patch_of = self.sight.patch_of;
+        for &at in &self.hidden {
+            let own = self.sets.of(patch_of[at]);
+            if !self.targets.iter().any(|&target| self.sets.of(patch_of[target]) == own) {
+                self.sets.join(own, patch_of[*self.targets.first().unwrap_or(&self.hidden[0])]);
             }
         }
-        let (part_of, _) = sets.numbered();
+    }
+
+    fn seen(self) -> Seen {
+        let (part_of, _) = self.sets.numbered();
         // Each part has a patch, whose number is lower than that of a lookout: parts are counted by patches.
-        let count = part_of[..patches].iter().max().map_or(1, |most| *most as usize + 1);
-        let faces = FACES.map(|place| is_inside[place].then(|| part_of[patches + place]));
-        Seen { part_of: self.patch_of.iter().map(|&patch| part_of[patch as usize]).collect(), count, faces }
+        let count = part_of[..self.patches].iter().max().map_or(1, |most| *most as usize + 1);
+        let faces = FACES.map(|place| self.is_inside[place].then(|| part_of[self.patches + place]));
+        let part_of = self.sight.patch_of.iter().map(|&patch| part_of[patch as usize]).collect();
+        Seen { part_of, count, faces }
     }
 }
