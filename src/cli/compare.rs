@@ -121,7 +121,7 @@ impl Compare {
     #[cfg(feature = "render")]
     fn with_golden(&self) -> Result<Status, Failure> {
         let path: &Path = &self.actual;
-        let golden = if self.bless { Golden::read(&self.expected)? } else { Golden::read_whole(&self.expected)? };
+        let golden = Golden::read(&self.expected, self.bless)?;
         let subject = Subject::load(path, &Limits::default())?;
         match &subject {
             _ if self.printing.quiet => {}

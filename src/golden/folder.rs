@@ -22,11 +22,11 @@ pub(crate) struct Golden {
 }
 
 impl Golden {
-    /// Reads a golden; one that does not exist has no record and no pictures.
+    /// Reads a golden; one that does not exist has no record and no pictures. One that is renewed may have an unreadable record.
     ///
     /// # Errors
-    /// If the folder has other files, or cannot be read.
-    pub(crate) fn read(folder: &Path) -> Result<Self, ComparisonError> {
+    /// If the folder has other files, or it or the record cannot be read.
+    pub(crate) fn read(folder: &Path, is_renewed: bool) -> Result<Self, ComparisonError> {
         let mut golden = Self { folder: folder.into(), record: None, damage: None, pictures: Pictures::new() };
         if folder.symlink_metadata().is_err() {
             return Ok(golden);
@@ -38,7 +38,12 @@ impl Golden {
         golden.pictures = pictures_in(folder)?;
         match record_of(folder) {
             Ok(record) => golden.record = record,
-            Err(what) => golden.damage = Some(what),
+            Err(what) if is_renewed => golden.damage = Some(what),
+            Err(what) => {
+                let what =
+                    format!("cannot be read: {what}; renew the golden with --bless, or UPDATE_GOLDENS=1 cargo test");
+                return Err(ComparisonError::NoGolden { path: folder.join(RECORD_FILE), what });
+            }
         }
         if let (None, None, Some(other)) = (&golden.record, &golden.damage, other_file(folder)) {
             return told(format!(
@@ -46,22 +51,6 @@ impl Golden {
             ));
         }
         Ok(golden)
-    }
-
-    /// Reads a golden like [`Self::read`], but refuses one with an unreadable record.
-    ///
-    /// # Errors
-    /// As [`Self::read`], and if the record cannot be read.
-    pub(crate) fn read_whole(folder: &Path) -> Result<Self, ComparisonError> {
-        let golden = Self::read(folder)?;
-        match golden.damage {
-            Some(what) => {
-                let what =
-                    format!("cannot be read: {what}; renew the golden with --bless, or UPDATE_GOLDENS=1 cargo test");
-                Err(ComparisonError::NoGolden { path: folder.join(RECORD_FILE), what })
-            }
-            None => Ok(golden),
-        }
     }
 
     /// The sizes and metadata of its readable pictures.

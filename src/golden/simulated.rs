@@ -52,8 +52,7 @@ impl Simulated<'_> {
         device: &mut TestDevice,
         accepts: bool,
     ) -> Result<Outcome, String> {
-        let golden = if accepts { Golden::read(folder) } else { Golden::read_whole(folder) };
-        let golden = golden.map_err(|error| error.to_string())?;
+        let golden = Golden::read(folder, accepts).map_err(|error| error.to_string())?;
         let gpu = if self.scene.is_lit() { device.of(&golden)? } else { None };
         let mut scene = self.scene.clone();
         scene.view.size = size(scene.view.size, &golden);

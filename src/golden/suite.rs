@@ -115,8 +115,7 @@ impl Suite {
         let updates = update == "1" && self.device.adapter.is_none();
         let folder = self.goldens.join(name);
         let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
-        let golden = if updates { Golden::read(&folder) } else { Golden::read_whole(&folder) };
-        let golden = golden.map_err(|error| error.to_string())?;
+        let golden = Golden::read(&folder, updates).map_err(|error| error.to_string())?;
         let gpu = if subject.is_lit() { self.device.of(&golden)?.cloned() } else { None };
         let drawn = draw(path, &subject, &golden, self.pictures, gpu.as_ref(), &mut || true);
         let drawn = drawn.map_err(|error| error.to_string())?.expect("it is not interrupted");

@@ -34,7 +34,7 @@ fn drawn(scene: &Scene, moved: &Scene, moved_run: usize) -> Drawn {
 /// The golden of drawn frames, read from its file as stored there.
 fn golden(drawn: &Drawn) -> Golden {
     let record = Record::parse(&drawn.record.text()).expect("a record");
-    Golden { record: Some(record), ..Golden::read(Path::new("golden-that-is-absent")).expect("none") }
+    Golden { record: Some(record), ..Golden::read(Path::new("golden-that-is-absent"), false).expect("none") }
 }
 
 /// Fewer states differ from more, even if no picture shows the missing ones.
