@@ -1,6 +1,6 @@
 //! The page of several comparisons: a row for each, with a link to its own page. The file `index.html` has its text and style.
 
-use super::template::{filled, hash};
+use super::template::filled_page;
 use crate::reading::words::escaped;
 
 const TEMPLATE: &str = include_str!("index.html");
@@ -27,15 +27,9 @@ pub fn index(all: &[Listed]) -> String {
         (all, 0) => format!("{all} as expected"),
         (all, bad) => format!("{bad} of {all} not as expected"),
     };
-    let page = TEMPLATE.replace("\r\n", "\n");
-    let style = page.split("<style>").nth(1).and_then(|rest| rest.split("</style>").next());
-    let policy = format!(
-        "default-src 'none'; img-src data:; style-src '{}'; base-uri 'none'; form-action 'none'",
-        hash(style.unwrap_or_default())
-    );
     let rows: String = bad.iter().chain(&good).map(|one| one.row()).collect();
     let passed = if bad.is_empty() { "passed" } else { "failed" };
-    filled(&page, &[("policy", &policy), ("passed", passed), ("outcome", &outcome), ("rows", &rows)])
+    filled_page(TEMPLATE, &["style"], &[("passed", passed), ("outcome", &outcome), ("rows", &rows)])
 }
 
 impl Listed {

@@ -17,7 +17,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use rayon::prelude::*;
 use std::cmp::Reverse;
-use template::{filled, hash};
+use template::filled_page;
 
 const TEMPLATE: &str = include_str!("page.html");
 /// The most pictures on a page; further ones are only listed.
@@ -115,16 +115,6 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
 impl Page {
     /// The whole HTML document.
     pub fn html(&self) -> String {
-        // Browsers hash the text between the tags with LF line ends.
-        let page = TEMPLATE.replace("\r\n", "\n");
-        let [style, script] = ["style", "script"].map(|tag| {
-            let rest = page.split(&format!("<{tag}>")).nth(1).expect("the page has one");
-            hash(rest.split(&format!("</{tag}>")).next().unwrap_or_default())
-        });
-        // Browsers run only this script and style, whatever text files and runs have for names.
-        let policy = format!(
-            "default-src 'none'; img-src data:; style-src '{style}'; script-src '{script}'; base-uri 'none'; form-action 'none'"
-        );
         let lines =
             |lines: &[String]| lines.iter().map(|line| format!("<li>{}</li>\n", escaped(line))).collect::<String>();
         let accept = self
@@ -138,10 +128,10 @@ impl Page {
                 lines(&self.others)
             )
         });
-        filled(
-            &page,
+        filled_page(
+            TEMPLATE,
+            &["style", "script"],
             &[
-                ("policy", &policy),
                 ("outcome", if self.passes { "passed" } else { "failed" }),
                 ("title", &escaped(&self.title)),
                 ("verdict", &escaped(&self.verdict)),
