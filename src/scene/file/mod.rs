@@ -21,7 +21,7 @@ pub(in crate::scene) use load::{AxialFile, LoadFile};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, ProbeFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
-pub(in crate::scene) use run::{ModelFile, RunFile, RunSource, StatesFile};
+pub(in crate::scene) use run::{ModelFile, RunFile, StatesFile};
 pub(in crate::scene) use time::{EndFile, StartFile, StepFile, TimeFile};
 
 use crate::look::{TypedView, View};

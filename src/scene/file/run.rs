@@ -87,25 +87,7 @@ pub(in crate::scene) struct ChosenStates {
     pub(in crate::scene) run: Option<String>,
 }
 
-/// The source of the motion of bodies in a run.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::scene) enum RunSource<'a> {
-    /// One model for all of them.
-    Model(&'a ModelFile),
-    /// A model for each, by name.
-    Models(&'a BTreeMap<String, ModelFile>),
-    /// A recording.
-    States,
-}
-
 impl RunFile {
-    /// The source of the motion of its bodies; `None` after a mistake.
-    pub(in crate::scene) fn source(&self) -> Option<RunSource<'_>> {
-        let model = self.model.as_ref().map(RunSource::Model);
-        let models = || self.models.as_ref().map(RunSource::Models);
-        model.or_else(models).or_else(|| self.states.as_ref().map(|_| RunSource::States))
-    }
-
     /// Whether it has a model of the caller's own.
     pub(in crate::scene) fn has_own_model(&self) -> bool {
         self.model.iter().chain(self.models.iter().flat_map(BTreeMap::values)).any(ModelFile::is_own)

@@ -3,7 +3,7 @@
 use super::KeyPath;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{list, nearest, quoted};
-use crate::scene::file::{ModelFile, RunFile, RunSource};
+use crate::scene::file::{ModelFile, RunFile};
 use crate::scene::in_words;
 use std::collections::BTreeMap;
 
@@ -35,13 +35,15 @@ pub(super) fn resolve<'a>(
     let one = |(at, run): (usize, &'a Option<RunFile>)| {
         let run = run.as_ref()?;
         let of = of(at, run, count, names, report);
-        let models = match run.source()? {
-            RunSource::Model(model) => {
+        let models = match (&run.model, &run.models, &run.states) {
+            (Some(model), ..) => {
                 let path = key_path!["run", at, "model"].to_vec();
                 Some(vec![TypedModel { model, path }; of.as_ref()?.len()])
             }
-            RunSource::States => Some(Vec::new()),
-            RunSource::Models(models) => by_name(at, models, of.as_deref()?, names?, report),
+            (None, Some(models), _) => by_name(at, models, of.as_deref()?, names?, report),
+            (None, None, Some(_)) => Some(Vec::new()),
+            // After a mistake.
+            (None, None, None) => return None,
         };
         Some(Choice { of: of?, models: models? })
     };
