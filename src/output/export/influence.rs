@@ -10,6 +10,7 @@
 //! follows the nodes with the largest weights above zero. It is then at the same place at rest, as a skin moves each point by what its
 //! nodes have moved, and moves with translations as before, but not with other affine motions.
 
+use crate::scene::generate::random;
 use crate::sim::Carried;
 use glam::{DMat3, DVec3};
 
@@ -44,21 +45,12 @@ pub(super) fn of(carried: &Carried, point: usize, rest: &[DVec3]) -> Vec<(u32, f
     })
 }
 
-/// A number from 0 to 1 that depends on a number in no simple way, so that sums of a few hardly ever agree (SplitMix64: G. Steele,
-/// D. Lea, C. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
-fn mixed(number: u32) -> f64 {
-    let mut bits = (u64::from(number) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// The tetrahedron of nodes with the least height at a point, and the weights of its corners there.
 fn tetrahedron(all: &[(u32, f64)], at: DVec3, rest: &[DVec3]) -> Option<Vec<(u32, f64)>> {
     let corner = |place: usize| rest[all[place].0 as usize] - at;
     let size = (0..all.len()).map(|place| corner(place).length_squared()).fold(0.0, f64::max);
-    // Nodes on a sphere, such as the corners of a cube, differ by a little of their own.
-    let height = |place: usize| corner(place).length_squared() / size + 1e-3 * mixed(all[place].0);
+    // Nodes on a sphere, such as the corners of a cube, differ by a little of their own, so that sums of a few hardly ever agree.
+    let height = |place: usize| corner(place).length_squared() / size + 1e-3 * random::nth(all[place].0);
     let mut best: Option<(f64, [usize; MOST], [f64; MOST])> = None;
     for a in 0..all.len() {
         for b in a + 1..all.len() {

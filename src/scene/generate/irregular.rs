@@ -8,14 +8,8 @@ use glam::DVec3;
 /// An element counts as flat if one of its corners has less than this part of its regular volume (area).
 const LEAST: f64 = 0.1;
 
-/// Appends the centres of cells to the nodes at their corners.
-pub(super) fn extend_to_middles(nodes: &mut Vec<DVec3>, middles: &[[u32; 8]]) {
-    for cell in middles {
-        nodes.push(middle(nodes, cell));
-    }
-}
-
-fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
+/// The centre of a cell with nodes at its corners (m).
+pub(super) fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
     cell.iter().map(|&node| nodes[node as usize]).sum::<DVec3>() / 8.0
 }
 

@@ -39,7 +39,9 @@ pub(super) fn make(typed: &Lattice) -> Made {
         Cells::Mixed => middles = mixed::cut_cubes(&block, typed.seed, &mut elements),
     }
     let mut nodes = block.nodes();
-    irregular::extend_to_middles(&mut nodes, &middles);
+    for cell in &middles {
+        nodes.push(irregular::middle(&nodes, cell));
+    }
     if typed.irregular > 0.0 {
         irregular::disturb(&block, &mut nodes, &elements, &middles, typed.irregular, typed.seed);
     }
@@ -48,8 +50,7 @@ pub(super) fn make(typed: &Lattice) -> Made {
 
 /// Cuts a square in two. The diagonals of neighbours meet, so that no direction is preferred.
 fn triangles(block: &Block, cell: [u32; 3], elements: &mut IndexLists) {
-    let [a, b, c, d] = block.square(cell);
-    let halves = if (cell[0] + cell[1]).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+    let halves = mixed::halves(block.square(cell), (cell[0] + cell[1]).is_multiple_of(2));
     halves.iter().for_each(|half| elements.push(half));
 }
 

@@ -22,11 +22,10 @@ pub(super) fn cut_squares(block: &Block, seed: u32, elements: &mut IndexLists) {
                 join(block, seed, cell, wish < 0.2, elements);
                 x += 2;
             } else {
-                let [a, b, c, d] = block.square(cell);
+                let square = block.square(cell);
                 match random::hash(seed, block.node(cell).into(), TURN) % 4 {
-                    0 => [[a, b, c], [a, c, d]].iter().for_each(|half| elements.push(half)),
-                    1 => [[a, b, d], [b, c, d]].iter().for_each(|half| elements.push(half)),
-                    _ => elements.push(&[a, b, c, d]),
+                    turn @ (0 | 1) => halves(square, turn == 0).iter().for_each(|half| elements.push(half)),
+                    _ => elements.push(&square),
                 }
                 x += 1;
             }
@@ -141,7 +140,7 @@ fn cut_cube(block: &Block, seed: u32, cell: [u32; 3], middles: &mut Vec<[u32; 8]
     }
 }
 
-/// A face cut along one of its diagonals: `true` from its first corner.
-fn halves([a, b, c, d]: [usize; 4], diagonal: bool) -> [[usize; 3]; 2] {
+/// A square cut along one of its diagonals: `true` from its first corner.
+pub(super) fn halves<T: Copy>([a, b, c, d]: [T; 4], diagonal: bool) -> [[T; 3]; 2] {
     if diagonal { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }

@@ -1,21 +1,34 @@
 //! Pseudo-random numbers that are the same on every machine.
 //!
-//! Each number is a hash of its index and its use, so the order of drawing has no effect.
+//! Each number is a hash of its index and its use, so the order of drawing has no effect: SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast
+//! splittable pseudorandom number generators", OOPSLA 2014).
 
-/// A number for an index and a use: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over both.
+/// A number for an index and a use: the finaliser over both.
 pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {
     [u64::from(seed), index, usage].into_iter().fold(0, |state, part| mix(state.wrapping_add(part)))
 }
 
 /// A number from 0 to below 1; see `hash`.
 pub fn unit(seed: u32, index: u64, usage: u64) -> f64 {
-    // A double holds the upper 53 bits.
-    (hash(seed, index, usage) >> 11) as f64 / (1u64 << 53) as f64
+    share(hash(seed, index, usage))
 }
 
-/// One number of SplitMix64 from its state.
+/// The number from 0 to below 1 at a place of the generator's sequence with the seed 0.
+pub(crate) fn nth(place: u32) -> f64 {
+    share(mix(u64::from(place).wrapping_mul(STEP)))
+}
+
+fn share(bits: u64) -> f64 {
+    // A double holds the upper 53 bits.
+    (bits >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// The difference of two states.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// One number of the generator from its state.
 fn mix(state: u64) -> u64 {
-    let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = state.wrapping_add(STEP);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
