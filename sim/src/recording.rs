@@ -36,9 +36,7 @@ impl ByRecording {
     pub(super) fn new(recording: Box<dyn Recording>, reporting: Box<dyn Dynamics>) -> Self {
         Self { recording: Arc::new(Mutex::new(recording)), reporting, shown: None }
     }
-}
 
-impl ByRecording {
     fn recording(&self) -> MutexGuard<'_, Box<dyn Recording>> {
         self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,7 +1,7 @@
 //! The digest of a scene's meaning.
 
 use super::file::{BodyFile, ContactRule, Coordinates, Positive, SceneFile};
-use super::schema::{SCHEMA, by_name, variants, without_nulls};
+use super::schema::{SCHEMA, by_name, retain, variants};
 use crate::look::print::SizeFile;
 use crate::reading::words::hexadecimal;
 use crate::sim::FrictionOf;
@@ -45,7 +45,7 @@ pub(super) fn digest(typed: &SceneFile, files: FileDigests) -> String {
     if let Ok(size) = SizeFile::deserialize(&value["view"]["size"]) {
         value["view"]["size"] = json!(size);
     }
-    without_nulls(&mut value);
+    retain(&mut value, |_, value| !value.is_null());
     with_friction(&mut value);
     with_contact(&mut value);
     without_defaults(&mut value, &SCHEMA);

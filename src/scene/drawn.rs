@@ -13,9 +13,7 @@ impl Scene {
     pub(crate) fn frame_diagnostics(&self) -> Vec<Diagnostic> {
         self.view.charts.iter().filter_map(Plot::diagnostic).chain([Diagnostic::ShapeError]).collect()
     }
-}
 
-impl Scene {
     /// The size of the bodies of all runs (m).
     pub(crate) fn extent(&self) -> f64 {
         self.runs.iter().map(Run::extent).fold(0.0, f64::max)

@@ -33,9 +33,7 @@ impl Limits {
     /// No limits except 32-bit indices and the machine's memory.
     pub const NONE: Self =
         Self { nodes: u64::MAX, corners: u64::MAX, springs: u64::MAX, file: u64::MAX, recorded: u64::MAX };
-}
 
-impl Limits {
     /// The limits of a mesh file.
     pub(super) fn of_mesh(&self) -> mesh::Limits {
         let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);

@@ -32,21 +32,9 @@ pub(super) static SCHEMA_OF_CODE: LazyLock<Value> = LazyLock::new(|| {
         let body = schema.pointer_mut(body).expect("one body, or several");
         LISTS.iter().for_each(|list| body["properties"][list]["items"] = json!({}));
     }
-    undescribe(&mut schema);
+    retain(&mut schema, |key, value| key != "description" || !value.is_string());
     schema
 });
-
-/// Removes all descriptions.
-fn undescribe(schema: &mut Value) {
-    match schema {
-        Value::Array(items) => items.iter_mut().for_each(undescribe),
-        Value::Object(table) => {
-            table.retain(|key, value| key != "description" || !value.is_string());
-            table.values_mut().for_each(undescribe);
-        }
-        _ => {}
-    }
-}
 
 /// The schema of a file's type.
 pub(super) fn schema_of<T: JsonSchema>(title: &str) -> Value {
@@ -72,7 +60,7 @@ fn tidy(schema: &mut Value) {
                 table.insert("maximum".into(), u32::MAX.into());
             }
             if let Some(default) = table.get_mut("default") {
-                without_nulls(default);
+                retain(default, |_, value| !value.is_null());
             }
             describe_kind(table);
             table.iter_mut().filter(|(key, _)| *key != "default").for_each(|(_, value)| tidy(value));
@@ -133,14 +121,14 @@ fn describe_kind(table: &mut Map<String, Value>) {
     }
 }
 
-/// Removes all entries that are null, at any depth.
-pub(super) fn without_nulls(value: &mut Value) {
+/// Keeps those entries of tables, at any depth, for which `keeps` is true.
+pub(super) fn retain(value: &mut Value, keeps: fn(&str, &Value) -> bool) {
     match value {
         Value::Object(table) => {
-            table.retain(|_, value| !value.is_null());
-            table.values_mut().for_each(without_nulls);
+            table.retain(|key, value| keeps(key, value));
+            table.values_mut().for_each(|value| retain(value, keeps));
         }
-        Value::Array(items) => items.iter_mut().for_each(without_nulls),
+        Value::Array(items) => items.iter_mut().for_each(|value| retain(value, keeps)),
         _ => {}
     }
 }

@@ -284,11 +284,6 @@ impl StartShape {
     pub(in crate::scene) fn has_direction(self) -> bool {
         matches!(self, Self::Line | Self::Plane | Self::MirrorImage)
     }
-
-    /// Whether it needs a seed.
-    pub(in crate::scene) fn is_random(self) -> bool {
-        self == Self::Cloud
-    }
 }
 
 /// A rigid spin.

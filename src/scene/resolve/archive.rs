@@ -114,31 +114,25 @@ impl Reader<'_, '_> {
 
     /// The header of a required array.
     fn array(&mut self, key: &str) -> Option<Array> {
-        let found = self.optional_head(key);
+        let found = self.npz.array(key);
         if let (None, Some((file, place))) = (&found, &self.source.file) {
             self.report.at(place, format!("`{file}` has no array `{key}`"), None);
         }
-        found.flatten()
+        self.sound(key, found?)
     }
 
     /// The header of an optional array.
     fn optional(&mut self, key: &str) -> Option<Array> {
-        self.optional_head(key).flatten()
+        let found = self.npz.array(key)?;
+        self.sound(key, found)
     }
 
-    /// The header of an array: `None` without such an array, `Some(None)` after reporting a mistake.
-    fn optional_head(&mut self, key: &str) -> Option<Option<Array>> {
-        match self.npz.array(key)? {
-            Ok(array) if array.shape.first() == Some(&0) && of_any(key) != "faces" => {
-                self.say(key, &[], "is empty; expected at least one row");
-                Some(None)
-            }
-            Ok(array) => Some(Some(array)),
-            Err(message) => {
-                self.say(key, &[], &message);
-                Some(None)
-            }
-        }
+    /// A header without a mistake.
+    fn sound(&mut self, key: &str, found: Result<Array, String>) -> Option<Array> {
+        let is_empty = |array: &Array| array.shape.first() == Some(&0) && of_any(key) != "faces";
+        let empty = || "is empty; expected at least one row".to_owned();
+        let sound = found.and_then(|array| if is_empty(&array) { Err(empty()) } else { Ok(array) });
+        sound.map_err(|message| self.say(key, &[], &message)).ok()
     }
 
     fn wrong_shape(&mut self, key: &str, array: &Array, expected: &str) {

@@ -79,7 +79,7 @@ impl<'a> TypedBody<'a> {
     }
 
     /// The keys that determine its size, and how to make it smaller.
-    fn sized_by(&self) -> (&'static [&'static str], &'static str) {
+    pub(super) fn sized_by(&self) -> (&'static [&'static str], &'static str) {
         match self.content {
             Content::Generated(Generator::Lattice(_)) => (&["lattice", "cells"], "use fewer cells"),
             Content::Generated(Generator::Polygon(_)) => (&["polygon", "sides"], "use fewer sides"),
@@ -89,11 +89,6 @@ impl<'a> TypedBody<'a> {
             Content::Listed(..) => (&["nodes"], "use fewer nodes"),
             Content::Filled(..) => (&["fill"], "fill it with fewer `cells`, or a larger `side`"),
         }
-    }
-
-    /// How to make it smaller.
-    pub(super) fn less(&self) -> &'static str {
-        self.sized_by().1
     }
 
     /// Reports that it is too large.
@@ -341,7 +336,7 @@ fn check_start(
 fn check_use(shape: StartShape, place: &KeyPath, report: &mut Collector<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),
-        ("seed", shape.is_random(), "clouds"),
+        ("seed", shape == StartShape::Cloud, "clouds"),
     ];
     for (key, used, about) in about {
         let path = key_path![place; "start", key];

@@ -174,8 +174,7 @@ fn repeated<'l>(
     let first = known.find(list(at), &list).unwrap_or(at);
     if first == at {
         known.put(at, list(at));
-    }
-    if first != at {
+    } else {
         let [this, other] = [at, first].map(|at| source.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
         source.report(report, key, &[at], message, "remove one of them");

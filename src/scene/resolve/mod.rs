@@ -258,7 +258,7 @@ fn bodies<'a>(
         None => (0..sizes.len()).map(|body| (body, None)).collect(),
     };
     let runs: Vec<limits::RunBodies<'a>> = choices.iter().map(|choice| run(choice.as_ref())).collect();
-    let less = |body: usize| typed[body].as_ref().map_or("", TypedBody::less);
+    let less = |body: usize| typed[body].as_ref().map_or("", |body| body.sized_by().1);
     let Some(Excess { message, help, of }) = limits::excess(&sizes, &runs, limits, less) else {
         let young = |at: usize| {
             let all = choices.iter().flatten().flat_map(|choice| choice.of.iter().zip(&choice.models));

@@ -194,7 +194,7 @@ impl Scene {
             frames_per_second: self.frames_per_second,
             cycle: self.cycle(),
             runs: self.runs.iter().enumerate().map(run).collect(),
-            obstacles: self.obstacles_in_words(),
+            obstacles: self.obstacles.iter().map(|one| words::describe(one, self.dimension())).collect(),
             holds: self.constraints(true),
             grabs: self.constraints(false),
             loads: self.loads_in_words(),
@@ -220,9 +220,6 @@ fn coordinates(vector: DVec3, dimension: Dimension) -> Vec<f64> {
 pub(super) fn corners(points: &[DVec3], dimension: Dimension) -> [Vec<f64>; 2] {
     let (low, high) = bounds(points);
     let round_off = 1e-12 * low.abs().max(high.abs()).max_element();
-    let axes = if dimension == Dimension::Plane { 2 } else { 3 };
-    [low, high].map(|corner| {
-        let coordinates = corner.to_array().into_iter().take(axes);
-        coordinates.map(|at| if at.abs() <= round_off { 0.0 } else { at }).collect()
-    })
+    let clean = |at: f64| if at.abs() <= round_off { 0.0 } else { at };
+    [low, high].map(|corner| coordinates(corner, dimension).into_iter().map(clean).collect())
 }

@@ -4,24 +4,20 @@ use super::{PartSummary, RunSummary, SceneSummary, coordinates};
 use crate::reading::captions::{quantity, typed};
 use crate::reading::words::{count, ends, list, several, short};
 use crate::scene::{AtRest, Probe, Region, Rest, Run, Scene, SceneBody};
-use crate::sim::{Course, Dimension, FrictionOf, Grip, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape, Turning};
+use crate::sim::{Course, Dimension, FrictionOf, Kernel, Load, Loading, Motion, Obstacle, Pull, Shape, Turning};
 use glam::DVec3;
 use std::fmt;
 use std::ops::Range;
 
 impl Scene {
-    /// Each obstacle in a few words.
-    pub(super) fn obstacles_in_words(&self) -> Vec<String> {
-        self.obstacles.iter().map(|one| describe(one, self.dimension())).collect()
-    }
-
     /// The nodes of each body that are held or dragged, and when.
     pub(super) fn constraints(&self, held: bool) -> Vec<String> {
         self.of_each_body(|run, own, body| {
             let wanted = run.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
             let words = wanted.filter_map(|grip| {
                 let nodes = own_nodes(&grip.nodes, own);
-                (!nodes.is_empty()).then(|| constraint(&nodes, body, grip, self.duration))
+                let span = span(grip.from, grip.until, self.duration);
+                (!nodes.is_empty()).then(|| format!("{} {span}", nodes_in_words(&nodes, body)))
             });
             words.collect()
         })
@@ -122,7 +118,7 @@ impl RunSummary {
 }
 
 /// An obstacle in words.
-fn describe(obstacle: &Obstacle, dimension: Dimension) -> String {
+pub(super) fn describe(obstacle: &Obstacle, dimension: Dimension) -> String {
     let vector = |point: DVec3| vector(&coordinates(point, dimension));
     let shape = match obstacle.shape {
         Shape::Floor { normal, height } => format!("floor at {} m along {}", short(height), vector(normal)),
@@ -176,11 +172,6 @@ fn span(from: f64, until: f64, duration: f64) -> String {
     let end = if until.is_finite() { format!("until {} s", short(until)) } else { "on".into() };
     let note = if from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
     format!("from {} s {end}{note}", short(from))
-}
-
-/// A kinematic constraint on nodes of a body in words.
-fn constraint(nodes: &[usize], body: &str, grip: &Grip, duration: f64) -> String {
-    format!("{} {}", nodes_in_words(nodes, body), span(grip.from, grip.until, duration))
 }
 
 /// A load on nodes of a body in words, at its full share.
