@@ -6,7 +6,7 @@ use crate::colour::Colour;
 use crate::output::AtomicFile;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, ErrorKind, Write};
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -151,11 +151,6 @@ impl Process {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Its exit status, if it has ended.
-    fn ended(&self) -> std::io::Result<Option<ExitStatus>> {
-        self.lock().try_wait()
-    }
-
     /// Kills it together with its child processes, as any of them may hold the pipe open.
     fn kill(&self) {
         let mut child = self.lock();
@@ -203,7 +198,7 @@ impl Film<'_> {
     fn ended(&mut self, process: &Process) -> Result<(), AnimationError> {
         self.pipe = None;
         let status = loop {
-            let ended = process.ended();
+            let ended = process.lock().try_wait();
             if !(self.go_on)() {
                 return Err(AnimationError::Stopped);
             }

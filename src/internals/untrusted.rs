@@ -193,10 +193,20 @@ fn moment(bytes: &[u8]) -> bool {
     beside("moment_0.vtu", bytes, &SCENE.replace(MODEL, "states = 'moment_*.vtu'"))
 }
 
+fn sound() -> Scene {
+    Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound")
+}
+
+/// The frames that checkpoints are of.
+fn frames(scene: &Scene) -> Frames<'_> {
+    let runner = Runner::new(scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
+    Frames::new(runner, &[2, 4], None)
+}
+
 /// Reads the states of [`SCENE`] up to its first frame.
 fn states(bytes: &[u8]) -> bool {
     in_folder("states.npz", bytes, |path| {
-        let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
+        let scene = sound();
         let Ok(stored) = Stored::open(path, &scene, &[0, 1], &[0]) else { return false };
         let Ok(mut frames) = Frames::stored(Runner::new(&scene, &[0, 1]), &[0], stored) else { return false };
         loop {
@@ -211,9 +221,8 @@ fn states(bytes: &[u8]) -> bool {
 /// Continues [`SCENE`] from a checkpoint, without the digest that would refuse every damage.
 fn checkpoint(bytes: &[u8]) -> bool {
     let Ok(progress) = postcard::from_bytes::<Progress>(bytes) else { return false };
-    let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-    let runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
-    let mut frames = Frames::new(runner, &[2, 4], None);
+    let scene = sound();
+    let mut frames = frames(&scene);
     let is_sound = frames.resume(progress).is_ok();
     for _ in 0..100 {
         if !is_sound || !matches!(frames.next(10), Ok(Next::Working | Next::Frame(_))) {
@@ -226,7 +235,7 @@ fn checkpoint(bytes: &[u8]) -> bool {
 /// Reads `run.json` of a folder with results of [`SCENE`].
 fn summary(bytes: &[u8]) -> bool {
     in_folder("run.json", bytes, |path| {
-        let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
+        let scene = sound();
         let (runs, files) = (vec!["shape".to_owned()], Vec::new());
         let manifest = Manifest { runs, frames: vec![0], states: false, files, pictures: None };
         let folder = path.parent().expect("a folder");
@@ -241,9 +250,8 @@ fn picture(bytes: &[u8]) -> bool {
 
 /// A checkpoint for that reader.
 pub fn checkpoint_of_scene() -> Vec<u8> {
-    let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-    let runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
-    let mut frames = Frames::new(runner, &[2, 4], None);
+    let scene = sound();
+    let mut frames = frames(&scene);
     frames.next(3).expect("no file is needed");
     let progress = frames.progress().expect("no file is needed").expect("frames are left");
     postcard::to_allocvec(&progress).expect("plain data")

@@ -68,8 +68,7 @@ impl<'t> Source<'t> {
         let clean = |c: char| if c.is_control() { ' ' } else { c };
         let mut excerpt: String = shown.chars().skip(first).take(WIDEST_EXCERPT).map(clean).collect();
         let mut from = column - 1 - first;
-        let to = (from + marked).min(WIDEST_EXCERPT).max(from + 1);
-        let mut to = to;
+        let mut to = (from + marked).min(WIDEST_EXCERPT).max(from + 1);
         if first > 0 {
             excerpt.insert_str(0, "… ");
             from += 2;

@@ -1,5 +1,6 @@
 //! Lists of grids with their times, for ParaView.
 
+use crate::reading::words::escaped;
 use std::fmt::Write;
 
 /// A list of grids of a run with a time step (s): the time (s), the name and the file of each.
@@ -18,9 +19,4 @@ pub(super) fn document(mark: &str, step: f64, files: impl Iterator<Item = (f64, 
             .expect("writing to a string");
     }
     text + "</Collection>\n</VTKFile>\n"
-}
-
-/// A text as the value of an attribute.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
