@@ -12,6 +12,7 @@ pub use crate::output::{
     Clock, Compression, Shown, Spent, Tags, Timings, encode, encode_print, exact, is_folder, read_file, read_tags,
     rows_as_csv, shell::line as command_line, thread_time, write_whole,
 };
+pub use crate::reading::captions::typed;
 pub use crate::scene::generate::random::unit as random_unit;
 pub use crate::sim::peak::{lanes, limit_lanes, multiply_adds};
 mod skipped;

@@ -177,7 +177,7 @@ fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
 }
 
 /// The value of an enum as written in a scene.
-pub(crate) fn typed(choice: &impl Serialize) -> String {
+pub fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 

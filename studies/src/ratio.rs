@@ -9,9 +9,10 @@
 
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch, built_in};
-use crate::table::{Table, figure, typed};
+use crate::table::{Table, figure};
 use crate::turns::{kind_of_time, seconds, spent, take_turns};
 use localshape::Scene;
+use localshape::internals::typed;
 use localshape::sim::Springs;
 
 /// Computation time of the shape model divided by that of mass-spring, as printed in section 4.

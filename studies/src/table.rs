@@ -1,7 +1,6 @@
 //! Rows and columns as CSV, as Markdown and as JSON.
 
 use localshape::internals::{exact, rows_as_csv};
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 /// A cell of a table.
@@ -128,11 +127,6 @@ pub(crate) fn figure(number: f64) -> String {
 /// A text, or a dash for none.
 pub(crate) fn or_dash<T: Into<String>>(text: Option<T>) -> Cell {
     text.map_or_else(|| "–".to_owned(), T::into).into()
-}
-
-/// A choice as written in a scene.
-pub(crate) fn typed(choice: &impl Serialize) -> String {
-    serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
 #[cfg(test)]

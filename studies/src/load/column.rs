@@ -1,6 +1,6 @@
 //! A column that buckles.
 
-use super::Case;
+use super::{Case, slender};
 use crate::material::{Bar, Model};
 use glam::DVec3;
 use localshape::sim::Material;
@@ -8,8 +8,6 @@ use localshape::sim::model::ElasticModel;
 use std::f64::consts::PI;
 
 const MATERIAL: Material = Material { young: 2e5, poisson: 0.0 };
-/// Length over depth.
-const SLENDERNESS: u32 = 20;
 /// The loads at which the stiffness across is measured, over the buckling load: first that of the closed form, then what follows from these.
 const LOADS: [[f64; 2]; 2] = [[0.0, 0.5], [0.9, 0.95]];
 /// The force across, over the buckling load.
@@ -25,8 +23,7 @@ pub(super) const CASE: Case = Case {
 };
 
 fn measure(model: &Model, refined: u32) -> Option<f64> {
-    let across = 1 << refined;
-    let bar = Bar::new(model.elements, [across, across, SLENDERNESS * across], 1.0 / f64::from(across), 1.0);
+    let bar = slender(model, refined);
     let (made, material) = bar.model(model, MATERIAL)?;
     let [width, depth] = bar.section;
     let thin = PI * PI * bar.rigidity(material) / (4.0 * bar.length * bar.length);

@@ -1,15 +1,14 @@
 //! A cantilever under a force that follows its end.
 
-use super::{Case, at_rest};
-use crate::material::{Bar, Model, Rod};
+use super::{Case, at_rest, slender};
+use crate::material::{Model, Rod};
 use glam::DVec3;
 use localshape::sim::{Load, Material};
 use std::sync::Arc;
 
 const MATERIAL: Material = Material { young: 2e5, poisson: 0.0 };
-/// `P L²/EI`, and length over depth.
+/// `P L²/EI`.
 const LOAD: f64 = 2.0;
-const SLENDERNESS: u32 = 20;
 
 pub(super) const CASE: Case = Case {
     name: "An elastica under a force that follows its end",
@@ -21,8 +20,7 @@ pub(super) const CASE: Case = Case {
 };
 
 fn measure(model: &Model, refined: u32) -> Option<f64> {
-    let across = 1 << refined;
-    let bar = Bar::new(model.elements, [across, across, SLENDERNESS * across], 1.0 / f64::from(across), 1.0);
+    let bar = slender(model, refined);
     let (made, material) = bar.model(model, MATERIAL)?;
     let load = LOAD * bar.rigidity(material) / (bar.length * bar.length);
     let shares: Vec<f64> = bar.load(DVec3::X).iter().map(|force| force.x).collect();

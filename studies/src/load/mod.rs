@@ -8,7 +8,7 @@ mod ring;
 mod twist;
 mod weight;
 
-use crate::material::{MODELS, Model, Parts, decimals, hold, rest_of};
+use crate::material::{Bar, MODELS, Model, Parts, decimals, hold, rest_of};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::Table;
 use glam::DVec3;
@@ -134,6 +134,12 @@ fn order(ratios: &[Option<f64>]) -> Option<f64> {
     let [before, after] = [before? - 1.0, after? - 1.0];
     let falls = before.abs() > after.abs().max(SMALL) && before * after > 0.0;
     falls.then(|| libm::log2(before / after))
+}
+
+/// A bar of 20 : 1 with a side of 1 m.
+fn slender(model: &Model, refined: u32) -> Bar {
+    let across = 1 << refined;
+    Bar::new(model.elements, [across, across, 20 * across], 1.0 / f64::from(across), 1.0)
 }
 
 /// A body at rest whose nodes are `held`, under some loads.

@@ -1,7 +1,8 @@
 //! The results as text and as a table.
 
 use super::{Axes, MapCell, Outcome, Protocol, Results};
-use crate::table::{Table, or_dash, typed};
+use crate::table::{Table, or_dash};
+use localshape::internals::typed;
 
 impl Outcome {
     /// In words, as in tables.

@@ -3,8 +3,8 @@
 use super::Subject;
 use super::count::Counting;
 use crate::methods;
-use crate::table::typed;
 use glam::DVec3;
+use localshape::internals::typed;
 use localshape::sim::integrate::{ByComposition, Composition};
 use localshape::sim::model::shape_based::RotationReading;
 use localshape::sim::model::{ElasticModel, ModelParameters, Setting};
