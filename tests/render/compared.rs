@@ -81,16 +81,20 @@ fn a_frame_without_the_run_of_the_ghost_has_none() {
     assert!(picture.curves.iter().all(|curve| curve.points.len() == 2), "the sample of the key alone");
 }
 
+/// A contact sheet of `scenes/fig4b.toml`, whose view begins with further keys.
+fn sheet(view: &str, keys: &str) -> Figure {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", &format!("[view]\n{view}\n"));
+    std::fs::write(folder.path().join("scene.toml"), scene).expect("a file");
+    let file = folder.path().join("figure.toml");
+    std::fs::write(&file, format!("[sheet]\nscene = 'scene.toml'\n{keys}")).expect("a file");
+    Figure::load(&file, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A sheet outlines a run that none of its rows shows.
 #[test]
 fn sheets_have_ghosts_too() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", "[view]\nghost = 'Local shape'\n");
-    std::fs::write(folder.path().join("scene.toml"), scene).expect("a file");
-    let text = "[sheet]\nscene = 'scene.toml'\nmoments = [0.03, 0.05]\n[[sheet.row]]\nrun = 'Mass-spring'\n";
-    std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
-    let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default());
-    let figure = figure.unwrap_or_else(|error| panic!("{error}"));
+    let figure = sheet("ghost = 'Local shape'", "moments = [0.03, 0.05]\n[[sheet.row]]\nrun = 'Mass-spring'\n");
     let moments = Moments::new(&figure);
     let other = moments.others[0][1].first().expect("the ghost's run");
     assert_eq!((other.run, other.snapshot.time), (0, moments.cells[0][1].snapshot.time));
@@ -160,13 +164,7 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
 
 #[test]
 fn sheets_have_paths() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", "[view]\npaths = ['centre']\n");
-    std::fs::write(folder.path().join("scene.toml"), scene).expect("a file");
-    let text = "[sheet]\nscene = 'scene.toml'\nmoments = [0.0, 0.05]\n";
-    std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
-    let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default());
-    let figure = figure.unwrap_or_else(|error| panic!("{error}"));
+    let figure = sheet("paths = ['centre']", "moments = [0.0, 0.05]\n");
     let moments = Moments::new(&figure);
     let ends = moments.histories[0].series.iter().map(|series| *series.times.last().expect("a start"));
     assert!(ends.into_iter().all(|end| (0.04..0.06).contains(&end)), "paths end with the last cell");
@@ -268,13 +266,8 @@ fn there_is_no_distance_to_a_state_that_is_not_shown() {
 /// A sheet measures the distance to a run that none of its rows shows.
 #[test]
 fn sheets_show_distances_too() {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("scene.toml"), include_str!("../../scenes/fig4b.toml")).expect("a file");
-    let text =
-        "[sheet]\nscene = 'scene.toml'\nmoments = [0.0, 0.05]\ncolour = { by = 'distance', to = 'Mass-spring' }\n
-        [[sheet.row]]\nrun = 'Local shape'\n";
-    std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
-    let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default()).expect("a figure");
+    let colour = "colour = { by = 'distance', to = 'Mass-spring' }";
+    let figure = sheet("", &format!("moments = [0.0, 0.05]\n{colour}\n[[sheet.row]]\nrun = 'Local shape'\n"));
     let cells = &Moments::new(&figure).cells[0];
     assert!(cells[0].snapshot.field.iter().all(|&distance| distance == 0.0) && !cells[0].snapshot.field.is_empty());
     assert!(cells[1].snapshot.field.iter().all(|&distance| distance > 0.0));
