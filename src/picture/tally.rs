@@ -288,7 +288,7 @@ mod tests {
             for (room, unit) in
                 (20..200).step_by(7).flat_map(|room| [0.6, 0.86, 1.0, 1.4].map(|unit| (f64::from(room), unit)))
             {
-                let scale = Scale { unit, ..Scale::REFERENCE };
+                let scale = Scale::at(unit);
                 let width = tally.width(scale, room);
                 assert!(width <= room, "{columns} squares take {width} of {room} px");
             }

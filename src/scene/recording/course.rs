@@ -9,13 +9,15 @@ use std::path::Path;
 
 /// The name of the array.
 pub(crate) const COURSE: &str = "localshape";
+/// The version of this crate, with a number for what it keeps for itself in archives and checkpoints: it rises with each change of that.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (format 2)");
 /// The remedy for an archive without the states of a scene.
 const AGAIN: &str = "simulate the scene again with --states";
 
 /// The program and the scene that results come from.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Origin {
-    /// Version of this crate. Other versions may read what follows differently.
+    /// The version that wrote it. Other versions may read what follows differently.
     pub(crate) version: String,
     /// Digest of the scene.
     digest: String,
@@ -25,15 +27,15 @@ pub(crate) struct Origin {
 impl Origin {
     /// The origin of the results of a scene with a digest and a title in this program.
     pub(crate) fn new(digest: &str, title: &str) -> Self {
-        Self { version: env!("CARGO_PKG_VERSION").to_owned(), digest: digest.to_owned(), title: title.to_owned() }
+        Self { version: VERSION.to_owned(), digest: digest.to_owned(), title: title.to_owned() }
     }
 
     /// Why results of this origin cannot be used for a scene, in words; `None` if they can.
     pub(crate) fn refusal(&self, digest: &str, title: &str) -> Option<String> {
-        let (version, found) = (env!("CARGO_PKG_VERSION"), &self.title);
-        if self.version != version {
-            return Some(format!("was written by localshape {}, and this is {version}", self.version));
+        if self.version != VERSION {
+            return Some(format!("was written by localshape {}, and this is {VERSION}", self.version));
         }
+        let found = &self.title;
         let other = if found == title { "another version of" } else { "another scene," };
         (self.digest != digest || digest.is_empty())
             .then(|| format!("belongs to {other} “{found}”; expected “{title}” as it is now"))
@@ -91,7 +93,7 @@ impl Course {
         let values = npz.values(&array).map_err(flaw)?;
         let damaged = |_| flaw("was not written by this program".to_owned());
         let (origin, rest): (Origin, _) = postcard::take_from_bytes(&values.bytes).map_err(damaged)?;
-        if origin.version != env!("CARGO_PKG_VERSION") {
+        if origin.version != VERSION {
             return Ok((origin, Self::default(), Vec::new()));
         }
         let (course, rest): (Self, _) = postcard::take_from_bytes(rest).map_err(damaged)?;
