@@ -4,6 +4,9 @@ use super::text::THIN_SPACE;
 use crate::reading::captions::{prefix as prefix_of, quantity, rounded};
 use crate::sim::Diagnostic;
 
+/// Standard gravity (m/s²).
+pub(super) const EARTH: f64 = 9.806_65;
+
 /// Shorter scenes have a clock with three digits (s).
 const LEAST_SPAN: f64 = 0.1;
 

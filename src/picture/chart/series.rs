@@ -12,6 +12,8 @@ use crate::sim::{Diagnostic, Dimension};
 const BEYOND: f64 = 3.0;
 /// The range includes zero unless zero is farther away than this many times its width.
 const NEAR_ZERO: f64 = 3.0;
+/// A force that is smaller than this part of the weight of the bodies on Earth is round-off.
+const ROUND_OFF: f64 = 1e-9;
 /// A range is at least this part of its values, so that round-off does not fill a chart.
 const LEAST_RANGE: f64 = 0.02;
 
@@ -58,7 +60,7 @@ impl Series {
         let diverged = of_run.divergence.map(|divergence| divergence.time);
         let one = match &charts[at] {
             &Plot::Diagnostic(diagnostic) | &Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
-                Self::over(diagnostic, of_run, of_run.diagnostics.iter().map(|all| diagnostic.of(all)), style)
+                Self::over(diagnostic, of_run, scene, of_run.diagnostics.iter().map(|all| diagnostic.of(all)), style)
             }
             Plot::Of(of) => {
                 let place = charts[..at].iter().filter_map(Plot::of).count();
@@ -82,6 +84,10 @@ impl Series {
             } else {
                 (times, points) = of_intervals(&points, &ways, scene.interval(of_run.run), scene.runs[of_run.run].step);
             }
+        } else if of.plot != Measure::Displacement {
+            points.retain(|point| point[1].is_finite());
+            points = over_intervals(&points, scene.interval(of_run.run), scene.runs[of_run.run].step);
+            times = points.iter().map(|point| point[0]).collect();
         } else if all.iter().any(|one| one.range[0] < one.range[1]) {
             members = vec![over_time(|one| one.range[0]), over_time(|one| one.range[1])];
         }
@@ -128,17 +134,32 @@ impl Series {
         let style = LineStyle { dash: &[], ..scene.runs[of_run.run].line(palette) };
         let bodies = scene.runs[of_run.run].several(scene).zip(&of_run.of_bodies);
         bodies.map(move |((body, _), all)| {
-            let one = Self::over(diagnostic, of_run, all.iter().map(|all| diagnostic.of(all)), style);
+            let one = Self::over(diagnostic, of_run, scene, all.iter().map(|all| diagnostic.of(all)), style);
             Self { name: format!("{run} · {body}"), is_part: true, ..one }
         })
     }
 
-    /// Values at the times of a run.
-    fn over(diagnostic: Diagnostic, of_run: &TimeSeries, values: impl Iterator<Item = f64>, style: LineStyle) -> Self {
+    /// Values at the times of a run of a scene.
+    fn over(
+        diagnostic: Diagnostic,
+        of_run: &TimeSeries,
+        scene: &Scene,
+        values: impl Iterator<Item = f64>,
+        style: LineStyle,
+    ) -> Self {
         let is_count = diagnostic == Diagnostic::TurnedOver;
         let points = of_run.times.iter().zip(values).map(|(&time, value)| [time, value]);
-        let points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
-        let points = if is_count { steps(&points) } else { points };
+        let mut points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
+        if is_count {
+            points = steps(&points);
+        } else if diagnostic.is_of_forces() {
+            let run = &scene.runs[of_run.run];
+            // Forces between bodies cancel up to round-off.
+            let least =
+                ROUND_OFF * number::EARTH * run.bodies.bodies().iter().flat_map(|body| body.mass()).sum::<f64>();
+            points.iter_mut().filter(|point| point[1].abs() < least).for_each(|point| point[1] = 0.0);
+            points = over_intervals(&points, scene.interval(of_run.run), run.step);
+        }
         Self { is_count, ..Self::plain(of_run.run, style, points) }
     }
 
@@ -233,6 +254,24 @@ fn of_intervals(forces: &[[f64; 2]], ways: &[[f64; 2]], interval: f64, step: f64
         }
     }
     (times, points)
+}
+
+/// The mean forces of intervals (s) as steps over the intervals to which they belong: what is known at a time is that of the last whole
+/// interval, in a run with a step (s).
+fn over_intervals(forces: &[[f64; 2]], interval: f64, step: f64) -> Vec<[f64; 2]> {
+    let (mut steps, mut last) = (Vec::<[f64; 2]>::new(), 0.0);
+    for &[time, force] in forces {
+        let number = ((time + 0.5 * step) / interval).floor();
+        if number <= last {
+            continue;
+        }
+        let begin = steps.last().filter(|_| number == last + 1.0).map_or((number - 1.0) * interval, |&[end, _]| end);
+        // An interval ends with the step nearest to its end.
+        let end = number * interval;
+        steps.extend([[begin, force], [if (time - end).abs() < step { time } else { end }, force]]);
+        last = number;
+    }
+    steps
 }
 
 /// The largest absolute value.
