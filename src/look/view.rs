@@ -279,7 +279,7 @@ words! {
         /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on
         /// the surface that face the viewer, and for at most 500.
         displacements,
-        /// Dots where bodies touch, and arrows for the mean force of each obstacle and body on each body, in the interval of the row
+        /// Dots where bodies touch, and there hollow arrows for the mean force of each obstacle and body on each body, in the interval of the row
         /// of `diagnostics.csv`.
         contacts,
         /// An arrow for each force of a load, arrows on faces under pressure, and an arc for each torque.

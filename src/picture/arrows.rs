@@ -65,7 +65,7 @@ pub(super) fn bare(ends: [DVec2; 2], size: f64, colour: Colour) -> Item {
     Item::part("arrow", [Item::fill(Path::polygon(&corners.map(point)), colour)])
 }
 
-/// A curve through pixels whose last pieces are the head of an arrow, for type of a unit and arrows of a size.
+/// A curve through pixels whose last pieces, fewer than all, are the head of an arrow, for type of a unit and arrows of a size.
 pub(super) fn bent(pixels: &[DVec2], head: usize, [unit, size]: [f64; 2], palette: &Palette) -> [Item; 2] {
     let (curve, last) = pixels.split_at(pixels.len() - head);
     let curve: Vec<_> = curve.iter().chain(&last[..head / 2]).map(|pixel| pixel.to_array()).collect();
@@ -83,11 +83,11 @@ pub(super) fn outlined(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colo
 }
 
 /// An arrow that differs from others and is as easily seen: its outline.
-pub(super) fn hollow(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> Item {
+pub(super) fn hollow(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 2] {
     let (corners, _) = outline(ends, HEAD * size);
     let path = Path::polygon(&corners.map(point));
     let rim = Item::stroke(path.clone(), Pen::solid(narrow(2.0 * THIN * size)), colour);
-    Item::part("arrow", [rim, Item::fill(path, ground)])
+    [rim, Item::fill(path, ground)]
 }
 
 /// The corners of an arrow with a head of a width (px): one side of the shaft, the joint, a wing, the tip and back; and
@@ -112,6 +112,17 @@ pub(super) fn inside(ends: [DVec2; 2], room: Rectangle, shortest: f64) -> Option
     let ends = cut(ends, sides(room.map(f64::from)))?;
     let longer = ends[0].distance(ends[1]) / shortest - 1.0;
     (longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
+}
+
+/// A break in the shaft of an arrow that is longer than it is drawn: two slanted strokes with the ground between them.
+pub(super) fn broken([from, to]: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 3] {
+    let along = (to - from).normalize_or(DVec2::X) * HEAD * size;
+    let (slanted, middle) = (0.5 * along.perp() + 0.2 * along, from.lerp(to, 0.4));
+    let [first, second] = [-0.16, 0.16].map(|share| middle + share * along);
+    let corners = [first - slanted, first + slanted, second + slanted, second - slanted];
+    let gap = Item::fill(Path::polygon(&corners.map(point)), ground);
+    let stroke = |at: DVec2| Item::line([at - slanted, at + slanted], THIN * size, colour);
+    [gap, stroke(first), stroke(second)]
 }
 
 #[cfg(test)]

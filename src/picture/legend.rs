@@ -22,6 +22,10 @@ use std::f64::consts::TAU;
 const BAR: f64 = 1.5;
 /// The least width of the sample of a body with its name, in those of others.
 const BODY: f64 = 0.5;
+/// The sample of a torque: where its arc begins, below at the left, and its length, in turns; its pieces, and those of its head.
+const ARC: [f64; 2] = [0.4, 0.75];
+const PIECES: u32 = 24;
+const HEAD: usize = 8;
 /// The most ticks.
 const MOST_TICKS: usize = 5;
 
@@ -163,7 +167,8 @@ impl Legend {
                 length = own;
             }
             SampleKind::Hollow([own, size]) => {
-                writer.marks.push(arrows::hollow(ends(own), size, palette.text, palette.background));
+                let arrow = arrows::hollow(ends(own), size, palette.text, palette.background);
+                writer.marks.push(Item::part("arrow", arrow));
                 length = own;
             }
             SampleKind::Outlined(colour, size) => {
@@ -172,9 +177,8 @@ impl Legend {
             SampleKind::Arc(size) => {
                 let radius = 0.5 * SHORT * unit;
                 let at = |turn: f64| DVec2::new(left + radius, middle) + radius * DVec2::from_angle(turn * TAU);
-                // Most of a turn, from below at the left.
-                let pixels: Vec<_> = (0..=24).map(|piece| at(0.4 + 0.75 * f64::from(piece) / 24.0)).collect();
-                writer.marks.extend(arrows::bent(&pixels, 8, [unit, size], palette));
+                let pixels = (0..=PIECES).map(|piece| at(ARC[0] + ARC[1] * f64::from(piece) / f64::from(PIECES)));
+                writer.marks.extend(arrows::bent(&pixels.collect::<Vec<_>>(), HEAD, [unit, size], palette));
                 length = 2.0 * radius;
             }
             SampleKind::Ghost(colour) => {

@@ -322,7 +322,7 @@ fn the_key_has_a_sample_of_each_kind_of_arrow() {
         time = { duration = 0.1, step = 0.005 }
         body = { lattice = { cells = [2, 2, 2], side = 0.1 }, mass = 1.0 }
         contact = { restitution = 0.1 }
-        run = [{ model = { kind = 'shape-based', stiffness = 1e4 } }]
+        run = [{ name = 'shape', model = { kind = 'shape-based', stiffness = 1e4 } }]
         obstacle = [{ kind = 'floor' }]
         [[load]]
         nodes = 'top'
@@ -342,4 +342,22 @@ fn the_key_has_a_sample_of_each_kind_of_arrow() {
     let arrows = || picture.marks.iter().filter(|mark| mark.shape == "arrow" && mark.rectangle[1] > bottom);
     assert_eq!(arrows().count(), 3);
     assert_eq!(arrows().filter(|arrow| arrow.colour == picture.palette.background).count(), 1);
+}
+
+/// A cut arrow with its head at the border would look like a smaller force.
+#[test]
+fn arrows_that_leave_their_panel_have_a_break() {
+    let broken = |scale: f64| {
+        let scene = parse(&format!(
+            "time = {{ duration = 0.1, step = 0.005 }}
+            body = {{ lattice = {{ cells = [2, 2, 2], side = 0.1 }}, mass = 1.0 }}
+            run = [{{ name = 'shape', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
+            load = [{{ nodes = 'top', force = [0, 5, 0] }}]
+            view = {{ show = ['surfaces', 'loads'], labels = ['name'], arrow_scale = {scale} }}"
+        ));
+        let picture = compose(&scene, &frame(&scene, 0));
+        let of = |shape: &str| picture.marks.iter().filter(|mark| mark.shape == shape).count();
+        [of("arrow"), of("broken arrow")]
+    };
+    assert_eq!((broken(0.5), broken(20.0)), ([1, 0], [0, 1]));
 }

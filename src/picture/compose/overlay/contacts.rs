@@ -17,8 +17,6 @@ const DOT: [f64; 2] = [0.5, 0.09];
 const LEAST: f64 = 0.6;
 /// A force as large as the mean weight of bodies on Earth has an arrow as long as this share of the size of the largest body.
 const LENGTH: f64 = 0.5;
-/// Standard gravity (m/s²).
-const EARTH: f64 = 9.806_65;
 
 /// Dots and arrows of contact.
 pub(super) struct Contacts;
@@ -32,9 +30,9 @@ impl Overlay for Contacts {
     fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
         let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
         let force = number::round_below(place.legend.arrow_length() / length);
-        let meaning = format!("contact force {}", number::value(Diagnostic::ContactForce, force, composer.extent));
+        let words = number::value(Diagnostic::ContactForce, force, composer.extent);
         let kind = SampleKind::Hollow([force * length, place.size(composer)]);
-        vec![Sample { names: vec![meaning.into()], kind }]
+        vec![Sample { names: vec![format!("contact force {words}").into(), words.into()], kind }]
     }
 
     /// Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as loads are filled. Dots
@@ -68,5 +66,5 @@ pub(super) fn metres_a_newton(scene: &Scene) -> f64 {
     let masses = scene.bodies.iter().map(|body| body.body.mass().iter().sum::<f64>());
     let mass = masses.sum::<f64>() / scene.bodies.len() as f64;
     let size = scene.bodies.iter().map(|body| body.body.extent()).fold(0.0, f64::max);
-    scene.view.arrow_scale * LENGTH * size / (mass * EARTH)
+    scene.view.arrow_scale * LENGTH * size / (mass * number::EARTH)
 }

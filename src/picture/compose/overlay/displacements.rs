@@ -23,8 +23,8 @@ impl Overlay for Displacements {
     fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
         let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
         let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
-        let meaning = format!("displacement {}", number::round_length(metres, composer.extent));
-        vec![place.arrow(composer, meaning, metres * pixels * scale)]
+        let length = number::round_length(metres, composer.extent);
+        vec![place.arrow(composer, [format!("displacement {length}"), length], metres * pixels * scale)]
     }
 
     /// The farthest first, in the colour of text as in the key: paths and fields have others. Arrows that would be specks on
@@ -39,7 +39,7 @@ impl Overlay for Displacements {
             let placement = draft.run.snapshot.placements[draft.bodies.assembly().body_of_node(bearer as usize)];
             let start = placement.place(draft.body.rest()[bearer as usize]);
             let end = start + view.arrow_scale * (draft.position[bearer as usize] - start);
-            draft.arrow([start, end], 2.0 * node, opacity, arrows::arrow)
+            draft.arrow([start, end], 2.0 * node, opacity, arrows::with_halo)
         });
         marks.extend(farthest_first(arrows.collect()));
     }

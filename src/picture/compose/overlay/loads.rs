@@ -44,12 +44,15 @@ impl Overlay for Loads {
         let straight = straight.map(|(value, metres, unit)| {
             let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
             let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
-            let meaning = format!("load {}{also}", quantity(value, unit));
-            place.arrow(composer, meaning, value * metres * pixels)
+            let size = quantity(value, unit) + &also;
+            place.arrow(composer, [format!("load {size}"), size], value * metres * pixels)
         });
         let turning = (scales.torque > 0.0).then(|| {
-            let meaning = format!("torque {}", quantity(scales.torque, "N m"));
-            Sample { names: vec![meaning.into()], kind: SampleKind::Arc(place.size(composer)) }
+            let size = quantity(scales.torque, "N m");
+            Sample {
+                names: vec![format!("torque {size}").into(), size.into()],
+                kind: SampleKind::Arc(place.size(composer)),
+            }
         });
         straight.into_iter().chain(turning).collect()
     }
@@ -71,7 +74,7 @@ impl Overlay for Loads {
                     let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
                     let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
                     let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
-                    found.extend(draft.arrow([start, start + way], 0.0, 1.0, arrows::arrow));
+                    found.extend(draft.arrow([start, start + way], 0.0, 1.0, arrows::with_halo));
                 }
                 Pull::Pressure(pressure, faces) => {
                     let length = scales.pascal * pressure * share;
@@ -154,7 +157,7 @@ impl Draft<'_> {
         let faces_viewer = self.flat || self.lens.facing(at, area) > 0.0;
         let start = if length > 0.0 { at + out } else { at };
         let end = if length > 0.0 { start - out } else { start + out };
-        faces_viewer.then(|| self.arrow([start, end], 0.0, 1.0, arrows::arrow))?
+        faces_viewer.then(|| self.arrow([start, end], 0.0, 1.0, arrows::with_halo))?
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.

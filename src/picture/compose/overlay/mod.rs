@@ -20,6 +20,7 @@ use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Legend, Sample, SampleKind};
 use crate::picture::{Framing, Item, arrows};
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
 pub(super) const MARKS: [&dyn Overlay; 5] =
@@ -67,24 +68,34 @@ impl KeyPlace<'_> {
         arrows::size(self.pixels_a_metre(composer) * composer.scene.view.side, self.scale.unit)
     }
 
-    /// The sample of an arrow of a length (px).
-    fn arrow<'c>(&self, composer: &Composer<'_>, meaning: String, length: f64) -> Sample<'c> {
-        Sample { names: vec![meaning.into()], kind: SampleKind::Arrow([length, self.size(composer)]) }
+    /// The sample of an arrow of a length (px), with its meaning in words, and in few.
+    fn arrow<'c>(&self, composer: &Composer<'_>, names: [String; 2], length: f64) -> Sample<'c> {
+        Sample { names: names.map(Cow::from).into(), kind: SampleKind::Arrow([length, self.size(composer)]) }
     }
 }
 
 /// How an arrow is drawn: from one pixel to another, with a size, in a colour on a ground.
-type Kind = fn([DVec2; 2], f64, Colour, Colour) -> Item;
+type DrawArrow = fn([DVec2; 2], f64, Colour, Colour) -> [Item; 2];
 
 impl Draft<'_> {
-    /// An arrow between two points (m), with its depth; `None` if it would be a speck, or is not longer than `shortest` (px).
-    fn arrow(&self, [start, end]: [DVec3; 2], shortest: f64, opacity: f64, kind: Kind) -> Option<(f64, Item)> {
+    /// An arrow between two points (m), with its depth; `None` if it would be a speck, or is not longer than `shortest` (px). Where it leaves the
+    /// room for it, its shaft has a break: it is longer than it is drawn.
+    fn arrow(&self, [start, end]: [DVec3; 2], shortest: f64, opacity: f64, draw: DrawArrow) -> Option<(f64, Item)> {
         let size = arrows::size(self.element, self.scale.unit);
         let (to, depth) = self.lens.project(end)?;
         let shortest = (RING * size).max(FREE).max(shortest);
-        let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;
+        let whole = [self.pixel(start)?, to.into()];
+        let (ends, part) = arrows::inside(whole, self.clear, shortest)?;
         let palette = &self.composer.palette;
-        Some((depth, kind(ends, size, palette.text, palette.background).faded(opacity * part)?))
+        let arrow = draw(ends, size, palette.text, palette.background).into_iter();
+        let item = match ends == whole {
+            true => Item::part("arrow", arrow.collect::<Vec<_>>()),
+            false => {
+                let broken = arrows::broken(ends, size, palette.text, palette.background);
+                Item::part("broken arrow", arrow.chain(broken).collect::<Vec<_>>())
+            }
+        };
+        Some((depth, item.faded(opacity * part)?))
     }
 }
 
