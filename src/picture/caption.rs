@@ -449,66 +449,6 @@ impl Writer<'_> {
     }
 }
 
-/// The separator of the parts of a description.
-pub(super) const BETWEEN_PARTS: &str = ", ";
-
-/// The parts of a description. A part that begins with `also` belongs to the one before it.
-fn parts(description: &str) -> Vec<String> {
-    let mut parts: Vec<String> = Vec::new();
-    for part in description.split(BETWEEN_PARTS) {
-        match parts.last_mut().filter(|_| part.starts_with("also ")) {
-            Some(last) => *last = format!("{last}{BETWEEN_PARTS}{part}"),
-            None => parts.push(part.to_owned()),
-        }
-    }
-    parts
-}
-
-/// Whether a part of a description follows from its other parts, or is the usual choice.
-fn follows(part: &str, description: &[String]) -> bool {
-    let has_modulus = || description.iter().any(|part| part.starts_with("E = "));
-    part == "exact rotations" || part.starts_with("k = ") && has_modulus()
-}
-
-/// What a part of a description says: `E`, `ζ`, or how many elements there are.
-fn subject(part: &str) -> &str {
-    match part.split_once(" = ") {
-        // The parts of several bodies are not told apart.
-        _ if part.contains("; ") => part,
-        Some((name, _)) => name,
-        None if part.starts_with(|first: char| first.is_ascii_digit()) => "",
-        None => part,
-    }
-}
-
-/// The descriptions of runs side by side, with as many parts as fit, whole: a number without its middle would be another number. What follows
-/// from other parts goes first, then what most descriptions share, and last what tells runs apart. All descriptions say the same things: a
-/// part that one run lacks would look like a difference.
-pub(super) fn fitting(descriptions: &[String], fits: impl Fn(&str) -> bool) -> Vec<String> {
-    let mut all: Vec<_> = descriptions.iter().map(|description| parts(description)).collect();
-    while let Some(at) = all.iter().position(|own| !own.is_empty() && !fits(&own.join(BETWEEN_PARTS))) {
-        let own = &all[at];
-        let rank = |part: &String| match () {
-            () if follows(part, own) => 0,
-            () => all.iter().filter(|other| !other.contains(part)).count() + 1,
-        };
-        let Some(first) = (0..own.len()).rev().min_by_key(|&part| rank(&own[part])) else { break };
-        if follows(&own[first], own) {
-            all[at].remove(first);
-        } else {
-            let gone = own[first].clone();
-            all.iter_mut().for_each(|own| own.retain(|part| subject(part) != subject(&gone)));
-        }
-    }
-    all.iter().map(|own| own.join(BETWEEN_PARTS)).collect()
-}
-
-/// Whether a shortened description lacks more than what follows from its other parts.
-pub(super) fn lacks(shortened: &str, whole: &str) -> bool {
-    let [short, whole] = [shortened, whole].map(parts);
-    whole.iter().any(|part| !short.contains(part) && !follows(part, &whole))
-}
-
 /// The number of elements of each named body in a state, in words; `None` without names.
 fn of_bodies(state: &str, names: &[&str], counts: impl Iterator<Item = usize>) -> Option<String> {
     let each: Vec<_> =
@@ -527,12 +467,17 @@ pub(super) fn letter(at: usize) -> String {
 pub(super) fn divergence(run: &RunFrame, span: f64) -> Option<Number> {
     let Status::Diverged(Divergence { time, is_end, .. }) = run.shown().status else { return None };
     let (loud, at) = (diverges(run), format!("at {}", number::time(time, span)));
-    let shown = run.last_fit.as_ref().map(|last| format!("shown as at {}", number::time(last.time, span)));
-    let whole = shown.map(|shown| [format!("{loud} {at}"), shown]);
+    let whole = shown_moment(run, time, span).map(|shown| [format!("{loud} {at}"), shown]);
     let alone = [[loud.to_owned(), at.clone()], [loud.to_owned(), String::new()]];
     let short = [[ENDED.to_owned(), at], [ENDED.to_owned(), String::new()]].into_iter().filter(|_| is_end);
     let wordings = whole.into_iter().chain(alone).chain(short).collect();
     Some(Number { widest: String::new(), wordings, is_loud: true })
+}
+
+/// Which moment is shown of a run that diverges at a time (s), in words, if it is another one.
+pub(super) fn shown_moment(run: &RunFrame, time: f64, span: f64) -> Option<String> {
+    let shown = number::time(run.last_fit.as_ref()?.time, span);
+    (shown != number::time(time, span)).then(|| format!("shown as at {shown}"))
 }
 
 /// The word for a run that diverges or whose recording ends.
@@ -569,43 +514,6 @@ mod tests {
         let scene = Scene::builder("cube", body).run("shape", shape).build(&Limits::default()).expect("a scene");
         let caption = short_description(&scene, &scene.runs[0]);
         assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
-    }
-
-    fn short(all: &[&str], most: usize) -> Vec<String> {
-        let all: Vec<_> = all.iter().map(|&text| text.to_owned()).collect();
-        fitting(&all, |text| text.chars().count() <= most)
-    }
-
-    const BRAKES: &str = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1, also of rotation, exact rotations, k = 10 kN/m";
-    const BENDS: &str = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3, exact rotations, k = 10 kN/m";
-
-    #[test]
-    fn what_tells_runs_apart_is_left_out_last() {
-        let both = [BRAKES, BENDS];
-        assert_eq!(short(&both, 100), both);
-        let expected = [
-            "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1, also of rotation",
-            "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3",
-        ];
-        assert_eq!(short(&both, 65), expected);
-        assert_eq!(short(&both, 32), ["ζ = 0.1, also of rotation", "ζ = 0.1 of deformation, β = 1/3"]);
-        assert_eq!(short(&both, 10), ["", "β = 1/3"]);
-        // Parts of one run alone go from the end, as do parts of one of several bodies.
-        assert_eq!(short(&[BENDS], 50), ["27 cubes, E = 200 kPa, ν = 0"]);
-        let bodies = "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m, ζ = 0.1";
-        assert_eq!(short(&[bodies, BRAKES], 45)[0], "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m");
-        // What follows from other parts is not missed.
-        assert!(!lacks("27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3", BENDS));
-        assert!(lacks("27 cubes, ζ = 0.1 of deformation, β = 1/3", BENDS));
-    }
-
-    /// `BRAKES` alone would have room for its modulus.
-    #[test]
-    fn runs_side_by_side_say_the_same_things() {
-        let expected = ["27 cubes, ζ = 0.1, also of rotation", "27 cubes, ζ = 0.1 of deformation, β = 1/3"];
-        assert_eq!(short(&[BRAKES, BENDS], 50), expected);
-        let springs = "54 springs, k = 10 kN/m, ζ = 0.1";
-        assert_eq!(short(&[springs, BENDS], 44), ["54 springs, k = 10 kN/m", "27 cubes, E = 200 kPa, ν = 0"]);
     }
 
     #[test]

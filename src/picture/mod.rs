@@ -15,6 +15,7 @@ mod caption;
 mod chart;
 mod compose;
 mod cut;
+mod description;
 mod diagram;
 mod ears;
 mod field;

@@ -246,7 +246,7 @@ impl<'a> Composer<'a> {
         let (layout, with_clock) = (&around.layout, around.clock_above.is_none());
         let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
-        let (names, [_, seconds]) = (words.names(&runs), words.seconds(&runs, layout));
+        let (names, seconds) = (words.names(&runs), words.seconds(&runs, layout));
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let &WordsShown { labels, events, .. } = &layout.written;
             let heading = words.heading(at, &runs, &names, &seconds, layout);

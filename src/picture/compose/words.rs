@@ -3,16 +3,14 @@
 use super::Composer;
 use super::overlay::have_colours_of_runs;
 use crate::look::{Labels, LineStyle, Palette, Plot, View};
-use crate::picture::caption::{self, BETWEEN_PARTS, Heading, WordRoom, Writer, fitting};
+use crate::picture::caption::{self, Heading, WordRoom, Writer};
 use crate::picture::chart::{event, style};
+use crate::picture::description::{are_shortened, second_lines};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
 use crate::picture::text::{Fonts, Weight};
 use crate::runner::history::History;
 use crate::scene::Scene;
-
-/// From this number of panels on, only the first one has the part of descriptions that all share.
-const MANY: usize = 4;
 
 /// The words of a scene.
 pub(super) struct Words<'a> {
@@ -78,21 +76,17 @@ impl<'a> Words<'a> {
         runs.iter().map(|&run| self.scene.runs.get(run).map_or("", |run| &*run.name)).collect()
     }
 
-    /// The descriptions of the runs of panels: whole, and as they are written. Among many panels, only the first one has the
-    /// part that all share.
-    pub(super) fn seconds(&self, runs: &[usize], layout: &Layout) -> [Vec<String>; 2] {
-        let all: Vec<_> = runs.iter().filter_map(|&run| self.descriptions.get(run)).collect();
-        let is_shared = |part: &str| all.iter().all(|one| one.split(BETWEEN_PARTS).any(|other| other == part));
-        let differs = |at: usize, part: &str| at == 0 || all.len() < MANY || !is_shared(part);
-        let whole = all.iter().enumerate().map(|(at, own)| {
-            let parts = own.split(BETWEEN_PARTS).filter(|part| layout.written.labels.model && differs(at, part));
-            parts.collect::<Vec<_>>().join(BETWEEN_PARTS)
-        });
-        let whole: Vec<_> = whole.collect();
+    /// The descriptions of runs, if panels have them.
+    fn described(&self, runs: &[usize], layout: &Layout) -> Vec<&'a str> {
+        let own = |&run: &usize| self.descriptions.get(run).filter(|_| layout.written.labels.model);
+        runs.iter().map(|run| own(run).map_or("", String::as_str)).collect()
+    }
+
+    /// The second lines of the panels of runs.
+    pub(super) fn seconds(&self, runs: &[usize], layout: &Layout) -> Vec<String> {
         let room = layout.panels.first().map_or(0.0, |&panel| WordRoom::new(panel, layout.scale).width());
         let size = layout.scale.caption();
-        let written = fitting(&whole, |text| self.fonts.width(text, Weight::Regular, size) <= room);
-        [whole, written]
+        second_lines(&self.described(runs, layout), |text| self.fonts.width(text, Weight::Regular, size) <= room)
     }
 
     /// The heading of a panel of several runs.
@@ -133,7 +127,7 @@ impl<'a> Words<'a> {
     fn is_crowded(&self, layout: &Layout, runs: &[usize], columns: usize) -> bool {
         let (names, at) = (self.names(runs), clock_panel(layout.panels.len(), columns));
         let Some(&panel) = layout.panels.get(at).filter(|_| at < runs.len()) else { return false };
-        let [_, seconds] = self.seconds(runs, layout);
+        let seconds = self.seconds(runs, layout);
         let heading = self.heading(at, runs, &names, &seconds, layout);
         let label = self.clock_label(layout);
         layout.written.labels.clock && self.writer(layout.scale).is_crowded(panel, &heading, label)
@@ -169,12 +163,13 @@ impl<'a> Words<'a> {
                 told.push("panels do not name all possible events of the chart".to_owned());
             }
         }
-        let (names, [whole, seconds]) = (self.names(runs), self.seconds(runs, &layout));
+        let (names, seconds) = (self.names(runs), self.seconds(runs, &layout));
+        let are_shortened = are_shortened(&self.described(runs, &layout), &seconds);
         let mut shortened = [Vec::new(), Vec::new()];
         for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
             let heading = self.heading(at, runs, &names, &seconds, &layout);
             let room = WordRoom::new(panel, layout.scale).width();
-            let is_shortened = [writer.is_shortened(&heading, room), caption::lacks(&seconds[at], &whole[at])];
+            let is_shortened = [writer.is_shortened(&heading, room), are_shortened[at]];
             for (of, is_shortened) in shortened.iter_mut().zip(is_shortened) {
                 of.extend(is_shortened.then_some(names[at]));
             }

@@ -1,7 +1,7 @@
 //! The text below the bodies of a contact sheet: tallies, counts and diagnostics, and the key of the tallies.
 
 use super::sheet_layout::SheetLayout;
-use crate::picture::caption::{Writer, diverges};
+use crate::picture::caption::{Writer, diverges, shown_moment};
 use crate::picture::compose::Composer;
 use crate::picture::layout::steps::{BESIDE, NEAR, SHORT};
 use crate::picture::layout::{Part, Scale};
@@ -120,7 +120,9 @@ impl<'a> Below<'a> {
         let (scale, palette) = (writer.scale, writer.palette);
         if let Status::Diverged(divergence) = run.shown().status {
             let when = format!("{} at {}", diverges(run), number::time(divergence.time, composer.scene.duration));
-            let mut wordings = [when, diverges(run).to_owned()].into_iter();
+            let shown = shown_moment(run, divergence.time, composer.scene.duration);
+            let whole = shown.map(|shown| format!("{when}, {shown}"));
+            let mut wordings = whole.into_iter().chain([when, diverges(run).to_owned()]);
             let wide = |text: &String| writer.fonts.width(text, Weight::SemiBold, scale.caption());
             let fitting = wordings.find(|text| wide(text) <= layout.words_width(scale));
             let text = |text| (text, Weight::SemiBold, scale.caption(), palette.text);
