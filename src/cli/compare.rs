@@ -78,8 +78,15 @@ impl Compare {
         }
         let [expected, actual] = [self.expected.display(), self.actual.display()];
         if is_scene(&self.expected) {
-            let option = if self.bless { "--bless " } else { "" };
-            bail!("{expected} is a scene or figure and must come last: localshape compare {option}{actual} {expected}");
+            if self.bless {
+                bail!(
+                    "{expected} is a scene or figure and must come last: localshape compare --bless {actual} {expected}"
+                );
+            }
+            bail!(
+                "{expected} is a scene or figure, which comes last, after its golden: localshape compare GOLDEN {expected}. \
+                 Frames are compared with frames: give two folders"
+            );
         }
         if self.bless {
             bail!("--bless makes or renews the golden of a scene or figure; {actual} is neither");

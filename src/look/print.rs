@@ -149,8 +149,8 @@ mod tests {
     use super::unit_of_sheet;
 
     #[test]
-    fn type_of_sheets_follows_the_area_but_no_narrow_one_has_wide_type() {
+    fn type_of_sheets_follows_their_area_and_in_narrow_ones_their_width() {
         assert_eq!([[1600, 900], [3200, 1800], [1600, 1800]].map(unit_of_sheet), [1.0, 2.0, 1.0]);
-        assert_eq!(unit_of_sheet([1600, 400]), 2.0 / 3.0);
+        assert_eq!([[1600, 400], [16, 16]].map(unit_of_sheet), [2.0 / 3.0, 0.36]);
     }
 }

@@ -19,6 +19,8 @@ const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
 const MARK: &[u8] = b"localshape checkpoint\n";
+/// The beginning of the marks of earlier builds, which had a number after it.
+const ANY_MARK: &[u8] = b"localshape checkpoint";
 
 /// The output of a command in the folder of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -103,6 +105,9 @@ impl Checkpoint {
 
     fn parse(bytes: &[u8], whose: &Whose, manifest: &Manifest) -> Result<Self, String> {
         let damaged = || format!("is damaged or cut short ({CHECKPOINT_FILE})");
+        if bytes.starts_with(ANY_MARK) && bytes.len() > MARK.len() && !bytes.starts_with(MARK) {
+            return Err("was written by another build of localshape".to_owned());
+        }
         let (digest_found, rest) =
             bytes.strip_prefix(MARK).and_then(|rest| rest.split_at_checked(32)).ok_or_else(damaged)?;
         if Sha256::digest(rest)[..] != *digest_found {
@@ -179,7 +184,8 @@ mod tests {
         for at in 0..bytes.len() {
             let mut changed = bytes.clone();
             changed[at] ^= 1;
-            assert!(Checkpoint::parse(&changed, &whose(), &manifest()).unwrap_err().contains("damaged"), "{at}");
+            let words = if at == ANY_MARK.len() { "another build of localshape" } else { "damaged" };
+            assert!(Checkpoint::parse(&changed, &whose(), &manifest()).unwrap_err().contains(words), "{at}");
         }
         let other = Manifest { frames: vec![0, 1], ..manifest() };
         let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();

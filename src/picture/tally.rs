@@ -167,7 +167,7 @@ impl Tally {
         let (pixels, gap) = ((side * unit).round(), (gap * unit).round().max(1.0));
         let fits = |pixels: &f64| *pixels >= 2.0 && columns * (pixels + gap) - gap <= room;
         let pixels = [pixels, pixels - 1.0].into_iter().find(fits)?;
-        (side >= TICK).then_some([pixels, gap])
+        (pixels + 0.5 >= TICK * unit).then_some([pixels, gap])
     }
 
     fn draw_squares(
@@ -289,8 +289,11 @@ mod tests {
                 (20..200).step_by(7).flat_map(|room| [0.6, 0.86, 1.0, 1.4].map(|unit| (f64::from(room), unit)))
             {
                 let scale = Scale::at(unit);
-                let width = tally.width(scale, room);
+                let (width, squares) = (tally.width(scale, room), tally.squares(scale, room));
                 assert!(width <= room, "{columns} squares take {width} of {room} px");
+                // It is drawn in the room that it asked for.
+                assert!(squares.is_none() || tally.squares(scale, width) == squares, "{columns} squares in {room} px");
+                assert!(squares.is_some() || columns > 3, "{room} px have room for {columns} squares");
             }
         }
     }

@@ -52,6 +52,7 @@ pub(crate) struct Search {
     stride: u64,
     /// The last state that fits so far.
     fitting: State,
+    /// The divergence.
     end: Option<Divergence>,
 }
 

@@ -368,7 +368,7 @@ fn wrong_words() {
     place.run("compare --bless-state a.png a.png").bad(2, &["'--bless-state'", "'--bless'"]);
     place
         .run("compare small.toml none")
-        .bad(2, &["small.toml is a scene or figure and must come last: localshape compare none"]);
+        .bad(2, &["small.toml is a scene or figure, which comes last, after its golden", "give two folders"]);
     std::fs::create_dir(place.path("broken")).unwrap();
     place.write("broken/golden.toml", "format = 7");
     if cfg!(feature = "render") {

@@ -140,8 +140,9 @@ impl<'s, 'f> Search<'s, 'f> {
         for (at, (facet, &patch)) in facets.iter().zip(*patch_of).enumerate() {
             let number = numbers[patch as usize];
             numbers[patch as usize] += 1;
-            let is_chosen = number.is_multiple_of(sizes[patch as usize].div_ceil(LOOKS)) || self.targets.contains(&at);
-            if !is_seen[at] || !is_chosen {
+            let is_chosen =
+                || number.is_multiple_of(sizes[patch as usize].div_ceil(LOOKS)) || self.targets.contains(&at);
+            if !is_seen[at] || !is_chosen() {
                 continue;
             }
             let along = self.sight.to_side(facet.middle, -facet.normal);

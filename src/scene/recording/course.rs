@@ -33,7 +33,8 @@ impl Origin {
     /// Why results of this origin cannot be used for a scene, in words; `None` if they can.
     pub(crate) fn refusal(&self, digest: &str, title: &str) -> Option<String> {
         if self.version != VERSION {
-            return Some(format!("was written by localshape {}, and this is {VERSION}", self.version));
+            let build = if self.version.starts_with(env!("CARGO_PKG_VERSION")) { "another build of " } else { "" };
+            return Some(format!("was written by {build}localshape {}, and this is {VERSION}", self.version));
         }
         let found = &self.title;
         let other = if found == title { "another version of" } else { "another scene," };

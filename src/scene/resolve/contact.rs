@@ -229,7 +229,7 @@ pub(super) fn separate(
 }
 
 /// What overlaps or touches at the start of runs, by the places of two bodies in the scene, or of a body and an obstacle, which are
-/// numbered after bodies. Of a node and its body the body is named twice.
+/// numbered after bodies: the deepest of each two. Of a node and its body the body is named twice.
 fn overlaps(scene: &Scene, obstacles: &[Obstacle], contacts: &Contacts) -> BTreeMap<[usize; 2], Overlap> {
     let mut found = BTreeMap::new();
     let mut known: BTreeSet<&[usize]> = BTreeSet::new();
@@ -243,7 +243,10 @@ fn overlaps(scene: &Scene, obstacles: &[Obstacle], contacts: &Contacts) -> BTree
             let body = run.bodies.body_of_node(overlap.node);
             let node = overlap.node - run.bodies.nodes(body).start;
             let own = Overlap { of: [Side::Body(run.of[body]); 2], node, ..overlap };
-            found.entry(overlap.of.map(number)).or_insert(own);
+            let deepest = found.entry(overlap.of.map(number)).or_insert(own);
+            if own.depth > deepest.depth {
+                *deepest = own;
+            }
         }
     }
     found

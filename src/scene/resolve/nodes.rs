@@ -243,6 +243,9 @@ fn layers_of(body: &Body) -> Vec<Layers> {
 /// another place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them
 /// along the others. Boxes around rows and corners are thin along several axes.
 fn warn_of_rest(nodes: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    if nodes.is_empty() || nodes.len() == body.body.len() {
+        return;
+    }
     let layers = layers_of(&body.body);
     let (position, dimension) = (&body.initial.position, body.body.dimension());
     let taken = layers.iter().map(|layers| {
