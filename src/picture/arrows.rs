@@ -117,11 +117,11 @@ pub(super) fn inside(ends: [DVec2; 2], room: Rectangle, shortest: f64) -> Option
 /// A break in the shaft of an arrow that is longer than it is drawn: two slanted strokes with the ground between them.
 pub(super) fn broken([from, to]: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 3] {
     let along = (to - from).normalize_or(DVec2::X) * HEAD * size;
-    let (slanted, middle) = (0.5 * along.perp() + 0.2 * along, from.lerp(to, 0.4));
-    let [first, second] = [-0.16, 0.16].map(|share| middle + share * along);
+    let (slanted, middle) = (0.75 * along.perp() + 0.3 * along, from.lerp(to, 0.4));
+    let [first, second] = [-0.22, 0.22].map(|share| middle + share * along);
     let corners = [first - slanted, first + slanted, second + slanted, second - slanted];
     let gap = Item::fill(Path::polygon(&corners.map(point)), ground);
-    let stroke = |at: DVec2| Item::line([at - slanted, at + slanted], THIN * size, colour);
+    let stroke = |at: DVec2| Item::line([at - slanted, at + slanted], STRONG * size, colour);
     [gap, stroke(first), stroke(second)]
 }
 

@@ -72,9 +72,7 @@ fn shorten(all: &mut [Vec<String>], at: usize) {
     let Some(gone) = shown(all, at).into_iter().rev().min_by_key(|part| rank(part)).map(str::to_owned) else { return };
     let (follows_here, before) = (follows(&gone, own, all), all.to_vec());
     for own in all {
-        let goes = |part: &String| {
-            subject(part) == subject(&gone) && (!follows_here || *part == gone || follows(part, own, &before))
-        };
+        let goes = |part: &String| subject(part) == subject(&gone) && (!follows_here || follows(part, own, &before));
         *own = own.iter().filter(|part| !goes(part)).cloned().collect();
     }
 }

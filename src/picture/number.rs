@@ -181,6 +181,7 @@ mod tests {
 
     #[test]
     fn short_times_keep_their_digits() {
+        assert_eq!(prefix_of(0.0), (1.0, ""), "an axis of zeros is not in attonewtons");
         assert_eq!([0.0, 2.3e-4, -4e-7].map(|seconds| time(seconds, 3.0)), ["0 ms", "200 µs", "−400 ns"]);
         assert_eq!([0.0, 4.02e-4, 1e-3].map(|seconds| time(seconds, 1e-3)), ["0.00 ms", "0.40 ms", "1.00 ms"]);
         assert_eq!([0.0, 0.0123, 0.05].map(|seconds| time(seconds, 0.05)), ["0.0 ms", "12.3 ms", "50.0 ms"]);

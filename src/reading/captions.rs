@@ -200,6 +200,9 @@ const PREFIXES: [(f64, &str); 13] = [
 
 /// The SI prefix that leaves one to three digits before the decimal point, and its factor.
 pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
+    if size == 0.0 {
+        return (1.0, "");
+    }
     // Rounding may have made the number slightly less than a power of a thousand.
     PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
