@@ -125,8 +125,8 @@ fn tells_what_finds_no_room() {
     let view = "size = [1280, 720]\ntext_scale = 1.4\ncharts = ['energy']";
     place.write("roomy.toml", &SMALL.replace("size = [96, 64]", view));
     assert_eq!(place.run("check roomy.toml").good().err, "");
-    let told = "warning: roomy.toml: not everything has room in 400×300: ";
-    assert!(place.run("check roomy.toml --size 400x300").err.starts_with(told));
+    let told = "warning: roomy.toml: not everything has room in 300×200: ";
+    assert!(place.run("check roomy.toml --size 300x200").err.starts_with(told));
     // What several runs lack is told once.
     let view = "size = [640, 360]\npanels = 2\ntext_scale = 2.6\nlabels = ['name', 'model']";
     place.write("narrow.toml", &SMALL.replace("size = [96, 64]", view));
