@@ -60,6 +60,19 @@ impl Weights {
         (&self.nodes[point], &self.weights[self.nodes.range(point)])
     }
 
+    /// Some of the points, carried by nodes that are counted on from `first`.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn some(&self, points: impl IntoIterator<Item = u32>, first: u32) -> Self {
+        let mut some = Self::default();
+        for point in points {
+            let (nodes, weights) = self.of(point as usize);
+            some.push(&nodes.iter().map(|node| node + first).collect::<Vec<_>>(), weights);
+        }
+        some
+    }
+
     /// The position of a point (m), from those of the nodes.
     ///
     /// # Panics

@@ -1,5 +1,6 @@
 //! Loads: forces on the nodes and faces of bodies, as they change with time and with the motion of the bodies.
 
+use super::carried::Weights;
 use super::motion::{Ease, Interval};
 use glam::{DMat3, DVec3};
 use std::fmt;
@@ -115,6 +116,8 @@ pub enum Pull {
     Torque(DVec3, Vec<f64>),
     /// A pressure (Pa) on faces by their corners.
     Pressure(f64, Vec<Vec<u32>>),
+    /// A pressure (Pa) on triangles of carried points.
+    CarriedPressure(f64, Vec<[u32; 3]>, Weights),
     /// The centrifugal force of a frame that turns.
     Centrifugal(Turning),
 }
@@ -155,6 +158,15 @@ impl Loading {
         Self { nodes, pull: Pull::Pressure(pressure, faces), course }
     }
 
+    /// A pressure (Pa) as [`Self::pressure`], on triangles of points that nodes carry. The force on a point is shared by the nodes that carry it
+    /// by their weights: with the virtual work of the pressure on the triangles.
+    pub fn pressure_on_carried(triangles: Vec<[u32; 3]>, points: Weights, pressure: f64, course: Course) -> Self {
+        let mut nodes: Vec<u32> = (0..points.len()).flat_map(|point| points.of(point).0).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Self { nodes, pull: Pull::CarriedPressure(pressure, triangles, points), course }
+    }
+
     /// The centrifugal force on nodes, in rising order, in a frame that turns about an axis: `m ω² r` away from it. The Coriolis force on what
     /// moves in the frame is not part of it, so it is for rest and for motion that is slow beside that of the frame.
     pub fn centrifugal(nodes: Vec<u32>, turning: Turning, course: Course) -> Self {
@@ -186,6 +198,17 @@ impl Loading {
             Pull::Pressure(pressure, faces) => faces.iter().for_each(|face| {
                 for_each_area(face, position, |node, area| forces[node as usize] -= area * (pressure * share));
             }),
+            Pull::CarriedPressure(pressure, triangles, points) => {
+                let at: Vec<DVec3> = (0..points.len()).map(|point| points.place(point, position)).collect();
+                let mut areas = vec![DVec3::ZERO; at.len()];
+                let triangles = triangles.iter();
+                triangles.for_each(|face| for_each_area(face, &at, |point, area| areas[point as usize] += area));
+                for (point, area) in areas.into_iter().enumerate() {
+                    let (nodes, weights) = points.of(point);
+                    let force = area * (pressure * share);
+                    nodes.iter().zip(weights).for_each(|(&node, &weight)| forces[node as usize] -= force * weight);
+                }
+            }
             Pull::Centrifugal(Turning { rate, about, masses }) => {
                 for (&node, mass) in self.nodes.iter().zip(masses) {
                     let arm = position[node as usize] - *about;

@@ -133,6 +133,8 @@ pub struct SceneBody {
     pub(crate) springs: Option<Vec<[u32; 2]>>,
     /// Sets of nodes with a name.
     pub(crate) groups: Vec<Group>,
+    /// Sets of points with a name, of the surface that it carries.
+    pub(crate) surface_groups: Vec<Group>,
     /// Regions with a material of their own.
     pub regions: Vec<Region>,
 }

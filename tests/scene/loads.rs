@@ -215,3 +215,40 @@ fn axes_of_frames_are_told_apart() {
     );
     case(WORLD, "centrifugal = [0, 0, 2], about = [0, 0]", "1:44 `load[0].about` has 2 coordinates; expected 3");
 }
+
+/// A surface that elements fill bears loads itself: with its own area, to the outside in all places, and with no sum of a pressure.
+#[test]
+fn a_filled_surface_is_loaded_itself() {
+    let hare = |with: &str, load: &str| {
+        good(&format!(
+            "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.2 }}\nhold = [{{ nodes = 'bottom' }}]\nload = [{{ {load} }}]\n\
+             body = {{ mesh = 'scenes/hare.ply', density = 300, fill = {{ with = '{with}', cells = 12 }} }}\n\
+             run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 800, damping_ratio = 0.1 }} }}]\n"
+        ))
+    };
+    for with in ["cubes", "graded", "tetrahedra", "polyhedra"] {
+        let stressed = hare(with, "faces = 'all', traction = [0, 0, 100]");
+        let fine = stressed.bodies[0].body.carried().expect("a surface");
+        let area = |&[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|point| fine.rest[point as usize]);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        let area: f64 = fine.triangles.iter().map(area).sum();
+        let sum: DVec3 = forces(&stressed).iter().sum();
+        assert!(sum.distance(DVec3::Z * (100.0 * area)) < 1e-9 * sum.length(), "{with}: {sum} on {area} m²");
+        let pressed = forces(&hare(with, "pressure = 100"));
+        assert!(pressed.iter().sum::<DVec3>().length() < 1e-9 * 100.0 * area, "{with}: a closed surface");
+        // Ears are at the top: a part of the surface.
+        let top = forces(&hare(with, "faces = { of = [0, 0, 0], within = 9 }, traction = [0, 0, 100]"));
+        assert!((top.iter().sum::<DVec3>().z / sum.z - 1.0).abs() < 1e-9, "{with}");
+    }
+    // Nodes of elements that are hardly filled do not fly off.
+    for load in ["force = [0, 1, 0]", "torque = [0, 0.1, 0]", "faces = 'all', force = [0, 1, 0]", "pressure = 100"] {
+        let scene = hare("cubes", load);
+        let mut world = scene.world(0);
+        world.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
+        let moved = world.state().position.iter().zip(&scene.runs[0].initial.position);
+        let farthest = moved.map(|(now, start)| now.distance(*start)).fold(0.0, f64::max);
+        assert!(farthest < 0.1, "{load}: {farthest} m");
+    }
+}

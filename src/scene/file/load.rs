@@ -12,10 +12,10 @@ use serde::{Deserialize, Serialize};
 pub(in crate::scene) struct LoadFile {
     /// The name of the body. Default: all bodies, each with the whole load.
     pub(in crate::scene) body: Option<String>,
-    /// The nodes that share the load equally, as in `[[hold]]`. Default: all.
+    /// The nodes that share the load equally, as in `[[hold]]`; nodes of a filled surface share it by their masses. Default: all.
     pub(in crate::scene) nodes: Option<NodesFile>,
     /// The faces that share the load by their areas at rest: `"all"` faces of the surface of the elements, or those with all corners among some nodes,
-    /// named as in `[[hold]]`. In the plane faces are sides of elements. Not together with `nodes`. Default: all for `traction` and `pressure`.
+    /// named as in `[[hold]]`. Of a filled surface they are its own triangles, chosen by its points. In the plane faces are sides of elements. Not together with `nodes`. Default: all for `traction` and `pressure`.
     pub(in crate::scene) faces: Option<NodesFile>,
     /// A force of constant direction (N), which nodes or faces share.
     pub(in crate::scene) force: Option<Coordinates>,
@@ -50,6 +50,14 @@ pub(in crate::scene) struct LoadFile {
     /// Interpolation of `ramp` and between `keys`.
     #[serde(default)]
     pub(in crate::scene) ease: Ease,
+}
+
+impl LoadFile {
+    /// The time (s) until which it does nothing.
+    pub(in crate::scene) fn begin(&self) -> f64 {
+        let first = self.keys.as_ref().and_then(|keys| keys.first()).filter(|key| key.share == 0.0);
+        first.map_or(self.from, |key| self.from.max(key.time))
+    }
 }
 
 /// A share of a load at a time.

@@ -171,7 +171,7 @@ fn filled(table: &BodyTable<'_>, of: Filled, side: f64, report: &mut Collector<'
         mass.iter_mut().for_each(|mass| *mass *= density * (measures.volume - overlap) / found);
     }
     let body = table.sound(body.with_masses(mass), report)?;
-    Some(SceneBody { groups, ..table.resolved(body, initial, Some(side)) })
+    Some(SceneBody { groups, surface_groups: surface.groups, ..table.resolved(body, initial, Some(side)) })
 }
 
 /// The size of a body with these nodes and elements.

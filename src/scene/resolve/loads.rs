@@ -1,13 +1,13 @@
 //! Loads: on which nodes and faces of which bodies they act, and when.
 
-use super::faces::{areas, faces_among, surface};
+use super::faces::{Faces, outside, surface};
 use super::nodes::select;
 use super::vector;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
-use crate::reading::words::{count, list};
+use crate::reading::words::{list, several};
 use crate::scene::SceneBody;
 use crate::scene::file::{AxialFile, LoadFile, NodesFile};
-use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading, Turning};
+use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading, Turning, Weights};
 use glam::DVec3;
 
 /// A load: on each body of the scene, if it has one.
@@ -23,6 +23,7 @@ enum OnBody {
     Dead(Vec<(u32, DVec3)>),
     Torque(Vec<(u32, f64)>, DVec3),
     Pressure(Vec<Vec<u32>>, f64),
+    CarriedPressure(Vec<[u32; 3]>, Weights, f64),
     Centrifugal(Vec<u32>, Turning),
 }
 
@@ -43,6 +44,10 @@ impl SceneLoad {
                 OnBody::Pressure(faces, pressure) => {
                     let moved = faces.iter().map(|face| face.iter().map(|node| first + node).collect());
                     Loading::pressure(moved.collect(), *pressure, course)
+                }
+                OnBody::CarriedPressure(triangles, points, pressure) => {
+                    let points = points.some(0..points.len() as u32, first);
+                    Loading::pressure_on_carried(triangles.clone(), points, *pressure, course)
                 }
                 OnBody::Centrifugal(nodes, turning) => {
                     let nodes = nodes.iter().map(|node| first + node).collect();
@@ -190,17 +195,21 @@ impl Reading<'_> {
         let key = if faces.is_some() || needs_faces.is_some() { "faces" } else { "nodes" };
         let chosen = faces.as_ref().or(nodes.as_ref()).unwrap_or(&all);
         let is_all = matches!(chosen, NodesFile::Named(name) if name == "all");
-        let selected = select(body.as_deref(), (!is_all).then_some(chosen), self.bodies, (self.path, key), report)?;
+        let on_faces = key == "faces";
+        let skins: Vec<_> = self.bodies.iter().filter(|_| on_faces).map(outside).collect();
+        let bodies = if on_faces { &skins } else { self.bodies };
+        let selected = select(body.as_deref(), (!is_all).then_some(chosen), bodies, (self.path, key), report)?;
         let mut of_bodies = Vec::new();
-        for (body, nodes) in self.bodies.iter().zip(selected) {
-            let faces = if key == "faces" { faces_among(&body.body, &nodes) } else { Vec::new() };
-            of_bodies.push(match (nodes.is_empty(), key, faces.is_empty()) {
-                (true, ..) => None,
-                (false, "faces", true) => {
-                    self.report_no_faces(body, nodes.len(), report);
+        for (body, points) in self.bodies.iter().zip(selected) {
+            let faces = on_faces.then(|| Faces::among(&body.body, &points));
+            of_bodies.push(match faces {
+                _ if points.is_empty() => None,
+                Some(faces) if faces.is_empty() => {
+                    self.report_no_faces(body, points.len(), report);
                     return None;
                 }
-                _ => Some(on_body(&kind, &body.body, nodes, faces)),
+                Some(faces) => Some(on_body(&kind, &body.body, faces.areas(&body.body), Some(faces))),
+                None => Some(on_body(&kind, &body.body, shared(&body.body, &points), None)),
             });
             if let Some(Some(OnBody::Torque(weights, torque))) = of_bodies.last() {
                 self.check_arms(body, weights, *torque, report)?;
@@ -211,13 +220,12 @@ impl Reading<'_> {
 
     fn report_no_faces(&self, body: &SceneBody, nodes: usize, report: &mut Collector<'_>) {
         let (path, body_words) = (key_path![self.path; "faces"], body.in_words());
-        let has_faces = !surface(&body.body).is_empty();
+        let has_faces = body.body.carried().is_some() || !surface(&body.body).is_empty();
         let (message, help) = if has_faces {
-            let nodes = count(nodes as u128);
-            let message = format!(
-                "`{}` takes {nodes} nodes of {body_words}, but no face has all corners among them",
-                written(&path)
-            );
+            let what = if body.body.carried().is_some() { "point" } else { "node" };
+            let nodes = several(nodes as u64, what);
+            let message =
+                format!("`{}` takes {nodes} of {body_words}, but no face has all corners among them", written(&path));
             (message, "choose a larger part of the surface, or write `nodes` for a force on nodes")
         } else {
             let message =
@@ -273,12 +281,15 @@ fn axial(
     }
 }
 
-/// A load on chosen nodes or faces of a body.
-fn on_body(kind: &Kind, body: &Body, nodes: Vec<u32>, faces: Vec<Vec<u32>>) -> OnBody {
-    let weights: Weighted = match faces.is_empty() {
-        true => nodes.iter().map(|&node| (node, 1.0)).collect(),
-        false => areas(&faces, body.rest()),
-    };
+/// Nodes of a body with their shares of a load: equal ones, or in a filled surface their masses, as elements that are hardly filled
+/// would not bear equal ones.
+fn shared(body: &Body, nodes: &[u32]) -> Weighted {
+    let share = |node: u32| if body.carried().is_some() { body.mass()[node as usize] } else { 1.0 };
+    nodes.iter().map(|&node| (node, share(node))).collect()
+}
+
+/// A load on nodes of a body with their shares, which bear faces if it acts on some.
+fn on_body(kind: &Kind, body: &Body, weights: Weighted, faces: Option<Faces>) -> OnBody {
     let whole: f64 = weights.iter().map(|(_, weight)| weight).sum();
     let dead = |of: &dyn Fn(u32, f64) -> DVec3| {
         OnBody::Dead(weights.iter().map(|&(node, weight)| (node, of(node, weight))).collect())
@@ -290,7 +301,18 @@ fn on_body(kind: &Kind, body: &Body, nodes: Vec<u32>, faces: Vec<Vec<u32>>) -> O
         Kind::Torque(torque) => {
             OnBody::Torque(weights.iter().map(|&(node, weight)| (node, weight / whole)).collect(), torque)
         }
-        Kind::Pressure(pressure) => OnBody::Pressure(faces, pressure),
+        Kind::Pressure(pressure) => match (faces, body.carried()) {
+            (Some(Faces::Carried(triangles)), Some(fine)) => {
+                let mut points: Vec<u32> = triangles.iter().flatten().copied().collect();
+                points.sort_unstable();
+                points.dedup();
+                let place = |point: u32| points.partition_point(|&other| other < point) as u32;
+                let triangles = triangles.iter().map(|face| face.map(place)).collect();
+                OnBody::CarriedPressure(triangles, fine.weights.some(points.iter().copied(), 0), pressure)
+            }
+            (Some(Faces::Own(faces)), _) => OnBody::Pressure(faces, pressure),
+            _ => unreachable!("a pressure acts on faces"),
+        },
         Kind::Centrifugal(rate, about) => {
             let nodes: Vec<u32> = weights.iter().map(|&(node, _)| node).collect();
             let masses = nodes.iter().map(|&node| body.mass()[node as usize]).collect();

@@ -53,6 +53,7 @@ impl BodyTable<'_> {
             has_cells: false,
             springs: None,
             groups: Vec::new(),
+            surface_groups: Vec::new(),
             regions: Vec::new(),
         }
     }

@@ -177,7 +177,7 @@ fn span(from: f64, until: f64, duration: f64) -> String {
 /// A load on nodes of a body in words, at its full share.
 fn describe_load(load: &Loading, nodes: &[usize], body: &str, dimension: Dimension) -> String {
     let nodes = nodes_in_words(nodes, body);
-    let areas = if dimension == Dimension::Plane { ("sides", "N/m") } else { ("faces", "Pa") };
+    let areas = if dimension == Dimension::Plane { ("side", "N/m") } else { ("face", "Pa") };
     match load.pull() {
         Pull::Dead(forces) => {
             let sum = vector(&coordinates(forces.iter().sum(), dimension));
@@ -192,8 +192,12 @@ fn describe_load(load: &Loading, nodes: &[usize], body: &str, dimension: Dimensi
             format!("centrifugal at {} rad/s about {about} m on {nodes}", short(rate.length()))
         }
         Pull::Pressure(pressure, faces) => {
-            let (faces, (sides, unit)) = (count(faces.len() as u128), areas);
-            format!("pressure {} {unit} on {faces} {sides} with {nodes}", short(*pressure))
+            let (faces, (side, unit)) = (faces.len() as u64, areas);
+            format!("pressure {} {unit} on {} with {nodes}", short(*pressure), several(faces, side))
+        }
+        Pull::CarriedPressure(pressure, triangles, _) => {
+            let triangles = several(triangles.len() as u64, "triangle");
+            format!("pressure {} Pa on {triangles} that {nodes} carry", short(*pressure))
         }
     }
 }

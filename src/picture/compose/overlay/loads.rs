@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// The length of the arrow of the largest load, and of one of the largest pressure, in sizes of the largest body.
-const LENGTH: [f64; 2] = [0.4, 0.12];
+const LENGTH: [f64; 2] = [0.22, 0.12];
 /// Of a whole torque: the radius of its arc in distances of the farthest node from the axis, and the part of a turn.
 const ARC: [f64; 2] = [1.25, 0.75];
 /// Pieces of an arc, and of its head.
@@ -80,7 +80,14 @@ impl Overlay for Loads {
                     let length = scales.pascal * pressure * share;
                     let all: Vec<u32> = (0..faces.len() as u32).collect();
                     let chosen = arrows::bearers(&all).into_iter().map(|face| &faces[face as usize]);
-                    found.extend(chosen.filter_map(|face| draft.pressed(face, length)));
+                    found.extend(chosen.filter_map(|face| draft.pressed(face, &draft.position, length)));
+                }
+                Pull::CarriedPressure(pressure, triangles, points) => {
+                    let length = scales.pascal * pressure * share;
+                    let at: Vec<_> = (0..points.len()).map(|point| points.place(point, &draft.position)).collect();
+                    let all: Vec<u32> = (0..triangles.len() as u32).collect();
+                    let chosen = arrows::bearers(&all).into_iter().map(|face| &triangles[face as usize]);
+                    found.extend(chosen.filter_map(|face| draft.pressed(face, &at, length)));
                 }
                 Pull::Centrifugal(_) => {}
                 Pull::Torque(torque, _) => {
@@ -114,7 +121,7 @@ impl Scales {
             let most = load.course().greatest();
             match load.pull() {
                 Pull::Dead(forces) => force = force.max(most * forces.iter().sum::<DVec3>().length()),
-                Pull::Pressure(size, _) => pressure = pressure.max(most * size.abs()),
+                Pull::Pressure(size, _) | Pull::CarriedPressure(size, ..) => pressure = pressure.max(most * size.abs()),
                 Pull::Torque(turn, _) => torque = torque.max(most * turn.length()),
                 // Its forces differ from node to node.
                 Pull::Centrifugal(_) => {}
@@ -149,10 +156,10 @@ impl Draft<'_> {
     }
 
     /// An arrow of a length (m) on the outside of a face that faces the viewer: towards the face, or away from it if the length is negative.
-    fn pressed(&self, face: &[u32], length: f64) -> Option<(f64, Item)> {
+    fn pressed(&self, face: &[u32], position: &[DVec3], length: f64) -> Option<(f64, Item)> {
         let (mut area, count) = (DVec3::ZERO, face.len() as f64);
-        for_each_area(face, &self.position, |_, part| area += part);
-        let at = face.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / count;
+        for_each_area(face, position, |_, part| area += part);
+        let at = face.iter().map(|&node| position[node as usize]).sum::<DVec3>() / count;
         let out = area.normalize_or_zero() * length.abs();
         let faces_viewer = self.flat || self.lens.facing(at, area) > 0.0;
         let start = if length > 0.0 { at + out } else { at };
