@@ -175,7 +175,7 @@ impl<'a> Runner<'a> {
     pub(crate) fn keeping_contact(mut self, plots: &[Plot]) -> Self {
         let scene = self.scene;
         if plots.iter().any(Plot::is_of_forces) {
-            self.runs.iter_mut().for_each(|running| scene.keep_contact(&mut running.world));
+            self.runs.iter_mut().for_each(|running| scene.keep_contact(running.run, &mut running.world));
         }
         self
     }

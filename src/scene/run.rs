@@ -68,9 +68,10 @@ pub struct Rest {
 pub struct AtRest {
     /// The first frame at which it is at rest.
     pub frame: u64,
-    /// The greatest kinetic energy since the frame before (J).
+    /// The greatest kinetic energy of a body since the frame before (J).
     pub kinetic_energy: f64,
-    /// The mean forces that were left since the frame before, as a share of gravity and loads; 0 without these.
+    /// The mean forces that were left on a body since the frame before, as a share of gravity and loads on it, or else of the greatest that
+    /// were left on it before: the largest share of all bodies.
     pub residual: f64,
 }
 

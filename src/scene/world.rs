@@ -9,8 +9,8 @@ impl Scene {
     ///
     /// # Panics
     /// If the scene has no such run.
-    pub fn world(&self, run: usize) -> World {
-        let run = &self.runs[run];
+    pub fn world(&self, number: usize) -> World {
+        let run = &self.runs[number];
         let surroundings = run.surroundings((self.gravity, self.mass_damping), &self.obstacles, self.contacts.as_ref());
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
         let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
@@ -28,13 +28,18 @@ impl Scene {
         };
         world.show(self.view.colour.map(|scale| scale.field));
         if self.keeps_forces() {
-            self.keep_contact(&mut world);
+            self.keep_contact(number, &mut world);
         }
         world
     }
 
-    /// Keeps the forces of contact, over the intervals between rows of `diagnostics.csv`, or else between frames.
-    pub(crate) fn keep_contact(&self, world: &mut World) {
-        world.keep_reactions(self.every.map_or(self.moment(1), Moment::at));
+    /// Keeps the forces of contact of a run, over the intervals between rows of `diagnostics.csv`, or else between frames.
+    pub(crate) fn keep_contact(&self, run: usize, world: &mut World) {
+        let every = self.every.map_or(self.moment(1), Moment::at);
+        if self.runs[run].rest.is_some() {
+            world.keep_reactions_from_rest(every);
+        } else {
+            world.keep_reactions(every);
+        }
     }
 }

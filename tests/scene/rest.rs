@@ -153,3 +153,76 @@ fn damping_of_masses_is_a_rate_or_a_ratio() {
     let pefrl = SWINGING.replace("time = {", "time = { integrator = 'pefrl',").replace(", until = 'rest'", "");
     assert!(bad(&pefrl).to_string().contains("has substeps backwards in time"), "{}", bad(&pefrl));
 }
+
+/// A body that swings is not at rest beside one that has fallen, however much more that one moved.
+#[test]
+fn every_body_comes_to_rest() {
+    let scene = |leaf: &str| {
+        format!(
+            "gravity = [0, -9.8, 0]\ntime = {{ duration = 4, until = 'rest', frames_per_second = 30 }}\n\
+             obstacle = [{{ kind = 'floor', friction = 0.8 }}]\n\
+             [[body]]\nname = 'block'\nlattice = {{ cells = [1, 1, 1], side = 0.4 }}\ndensity = 2000\nlowest = 0.1\noffset = [3, 0, 0]\n\
+             {leaf}[[run]]\nname = 'Shapes'\nmodel = {{ kind = 'shape-based', young = 1e6, damping_ratio = 0.5 }}\n"
+        )
+    };
+    let block = good(&scene(""));
+    assert!(block.runs[0].comes_to_rest.is_some(), "{:?}", block.warnings);
+    let leaf = "[[body]]\nname = 'leaf'\nlattice = { cells = [6, 1, 1], side = 0.05 }\ndensity = 50\noffset = [0, 1, 0]\n\
+                [[hold]]\nbody = 'leaf'\nnodes = 'left'\n";
+    let both = scene(leaf).replace(
+        "model = { kind = 'shape-based', young = 1e6, damping_ratio = 0.5 }",
+        "models = { block = { kind = 'shape-based', young = 1e6, damping_ratio = 0.5 }, leaf = { kind = 'shape-based', young = 2e4 } }",
+    );
+    let both = good(&both);
+    assert_eq!(both.runs[0].comes_to_rest, None);
+    assert!(both.warnings[0].message.contains("\"Shapes\" is not at rest after 4 s"), "{:?}", both.warnings);
+}
+
+/// What starts at rest rests from its first frame on, and what nothing acts on as well.
+#[test]
+fn rest_from_the_start_is_rest() {
+    let balanced = SWINGING.replace("until = 'rest'", "until = 'rest', start = 'equilibrium'");
+    let still = SWINGING.replace("gravity = [0, -9.8, 0]\n", "");
+    for text in [balanced, still] {
+        let scene = good(&text);
+        assert!(
+            scene.runs.iter().all(|run| run.comes_to_rest.is_some_and(|rest| rest.frame == 1)),
+            "{:?}",
+            scene.warnings
+        );
+    }
+}
+
+#[test]
+fn a_run_that_diverges_before_rest_is_told() {
+    let scene = good(&SWINGING.replace("duration = 20", "duration = 2, step = 0.1"));
+    let told: Vec<_> = scene.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    assert!(told.contains(&"\"Shapes\" and \"Springs\" diverge before rest"), "{told:?}");
+}
+
+/// What is left is told beside the load also where that is smaller than round-off of the forces.
+#[test]
+fn a_load_as_small_as_round_off_is_told() {
+    let scene =
+        good(&HANGING.replace("gravity = [0, -9.8, 0]\n", "load = [{ force = [0, 4e-15, 0], nodes = 'bottom' }]\n"));
+    let [first, ..] = &scene.warnings[..] else { panic!("no warning") };
+    assert!(first.message.contains("of the load is left in the state of rest of \"Shapes\""), "{}", first.message);
+    assert!(scene.runs[0].rest.is_some_and(|rest| rest.residual > 0.02));
+}
+
+/// The forces that hold a body at rest are known from the start.
+#[test]
+fn what_starts_at_rest_has_reactions_there() {
+    let scene = good(&(HANGING.replace("duration = 1", "duration = 0") + "view.charts = ['hold_force']\n"));
+    for run in 0..2 {
+        let reactions = scene.world(run).reactions().expect("forces at the start");
+        assert!((reactions[0].force.y / 39.2 - 1.0).abs() < 1e-9, "{:?}", reactions[0].force);
+    }
+    let standing = HANGING
+        .replace("hold = [{ nodes = 'top' }]\n", "obstacle = [{ kind = 'floor' }]\nview.charts = ['contact_force']\n");
+    let standing = good(&standing.replace("density = 1000", "density = 1000, lowest = 0"));
+    for run in 0..2 {
+        let reactions = standing.world(run).reactions().expect("forces at the start");
+        assert!((reactions[0].force.y / 39.2 - 1.0).abs() < 1e-3, "{:?}", reactions[0].force);
+    }
+}

@@ -179,6 +179,18 @@ impl Impulses {
         }
     }
 
+    /// Takes forces as the means of the interval before the present one.
+    pub(crate) fn begin_with(&mut self, forces: &[Reaction]) {
+        let places: Vec<_> = forces.iter().map(|one| self.place(one.from, one.on)).collect();
+        let sums = self.sums.get_mut().unwrap_or_else(PoisonError::into_inner);
+        sums.numbers[1] = 1.0;
+        let means = HEAD + (sums.numbers.len() - HEAD) / 2;
+        for (Reaction { force, torque, .. }, place) in forces.iter().zip(places) {
+            let mean = force.to_array().into_iter().chain(torque.to_array());
+            sums.numbers[means + place..][..6].iter_mut().zip(mean).for_each(|(number, mean)| *number = mean);
+        }
+    }
+
     /// The first step after which an interval ends, later than a step, with steps of ΔT (s).
     pub(crate) fn next_end(&self, after: u64, step: f64) -> u64 {
         let Moment { count, rate } = self.every;

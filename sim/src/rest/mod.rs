@@ -45,7 +45,7 @@ pub struct Equilibrium {
     /// The position of each node (m).
     pub position: Vec<DVec3>,
     /// The forces that are left on nodes, divided by the loads on them: the roots of the sums of their squares, without nodes that are
-    /// held. Without loads, the forces at the start take their place. Below round-off of the forces it is that of round-off.
+    /// held. Without loads, the forces at the start take their place. Of a load that is small beside the round-off of the forces much is left.
     pub residual: f64,
     /// How often the forces were evaluated.
     pub evaluations: u64,
@@ -119,12 +119,12 @@ pub fn equilibrium(
     };
     // A model whose forces depend on its history has others in a world that starts there.
     forces.world = world(&position);
-    let residual = match forces.mean(&position, steps) {
-        Some(left) => forces.residual(&position, &left),
-        None => f64::INFINITY,
+    let [residual, beside_round_off] = match forces.mean(&position, steps) {
+        Some(left) => forces.residuals(&position, &left),
+        None => [f64::INFINITY; 2],
     };
     let evaluations = forces.evaluations;
-    if residual <= enough {
+    if beside_round_off <= enough {
         Ok(Equilibrium { position, residual, evaluations })
     } else {
         Err(NoEquilibrium::Unbalanced { residual, evaluations })
@@ -170,14 +170,21 @@ impl Forces {
         is_finite
     }
 
-    /// The forces that are left with accelerations (m/s²) at positions (m), as a share of the load.
+    /// The forces that are left with accelerations (m/s²) at positions (m), as a share of the load, or of the least load if that is larger.
     fn residual(&mut self, position: &[DVec3], acceleration: &[DVec3]) -> f64 {
+        self.residuals(position, acceleration)[1]
+    }
+
+    /// The forces that are left as a share of the load, and [`Self::residual`].
+    fn residuals(&mut self, position: &[DVec3], acceleration: &[DVec3]) -> [f64; 2] {
         let left = acceleration.iter().zip(&self.mass).map(|(&acceleration, &mass)| acceleration * mass);
         let left = size(left);
         let first = *self.first.get_or_insert(left);
         let loads = self.world.loads(position).into_iter().zip(&self.is_held);
         let load = size(loads.filter(|(_, is_held)| !**is_held).map(|(force, _)| force));
-        left / self.least.max(if load > 0.0 { load } else { first })
+        let load = if load > 0.0 { load } else { first };
+        // Nothing is left of no load.
+        [if left > 0.0 { left / load } else { 0.0 }, left / self.least.max(load)]
     }
 
     /// # Errors

@@ -38,6 +38,24 @@ impl World {
         self.system.impulses = Some(impulses);
     }
 
+    /// Does the same in a world that starts at [rest](crate::equilibrium), where the forces are those that hold it: the means over its first steps,
+    /// which are not taken.
+    ///
+    /// # Panics
+    /// If `every` is not above zero.
+    pub fn keep_reactions_from_rest(&mut self, every: Moment) {
+        /// As many as the search for rest looks at where surfaces meet.
+        const STEPS: u64 = 16;
+        let mut copy = self.clone();
+        copy.keep_reactions(Moment { count: STEPS as f64, rate: 1.0 / self.step() });
+        copy.advance(STEPS);
+        self.keep_reactions(every);
+        if let (Some(forces), Some(impulses)) = (copy.reactions(), self.system.impulses.as_mut()) {
+            impulses.begin_with(&forces);
+            impulses.store(&mut self.state.memory.contact);
+        }
+    }
+
     /// The mean forces in the last interval that has ended, of each obstacle, each constraint and then each body on each body, NaN for
     /// constraints of models that move their nodes themselves; `None` before the first end, and if they are [not kept](Self::keep_reactions).
     pub fn reactions(&self) -> Option<Vec<Reaction>> {

@@ -28,6 +28,7 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
     for (run, found) in runs.iter_mut().zip(found) {
         match found {
             Some(Ok(found)) => {
+                warn_of_small_loads(run, found.residual, report);
                 run.rest = Some(Rest { residual: found.residual, evaluations: found.evaluations });
                 run.placed = Some(std::mem::replace(&mut run.initial.position, found.position));
             }
@@ -38,6 +39,19 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
             }
             None => {}
         }
+    }
+}
+
+/// Warns of a state of rest in which round-off of the elastic forces is all that is balanced.
+fn warn_of_small_loads(run: &Run, residual: f64, report: &mut Collector<'_>) {
+    /// The share of the load above which what is left is told.
+    const MUCH: f64 = 0.02;
+    if residual > MUCH {
+        let name = quoted(&run.name);
+        let message = format!(
+            "{residual:.0e} of the load is left in the state of rest of {name}: the load is as small as round-off"
+        );
+        report.warn(&key_path!["time", "start"], message, "give a larger load, or a softer body");
     }
 }
 
