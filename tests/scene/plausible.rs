@@ -117,3 +117,58 @@ model = { kind = 'shape-based', stiffness = 1e4 }
     assert_eq!(told(0.001)[0].1, message);
     assert!(told(0.001)[0].2.contains("scale = 1000 "));
 }
+
+#[test]
+fn what_begins_after_the_end() {
+    let of = |text: &str| {
+        let told = warnings(&format!("{CUBE}model = {{ kind = 'shape-based', young = 1e5 }}\n{text}"));
+        told.into_iter().map(|(message, _)| message).collect::<Vec<_>>()
+    };
+    let late =
+        |key: &str, time: &str| vec![format!("`{key}` does nothing: it begins at {time} s, and the scene ends at 1 s")];
+    let load = |times: &str| of(&format!("[[load]]\nforce = [1, 0, 0]\n{times}\n"));
+    assert_eq!(load("from = 0.9\nramp = 5"), [""; 0]);
+    assert_eq!(load("from = 1\nramp = 5"), late("load[0]", "1"));
+    assert_eq!(load("keys = [{ time = 2, share = 0 }, { time = 3, share = 1 }]"), late("load[0]", "2"));
+    assert_eq!(load("keys = [{ time = 2, share = 1 }, { time = 3, share = 0 }]"), [""; 0]);
+    assert_eq!(of("[[hold]]\nnodes = 'top'\nfrom = 1.5\n"), late("hold[0]", "1.5"));
+    let path = |from: u32| format!("path = {{ keys = [{{ time = {from} }}, {{ time = 8, shift = [0, 1, 0] }}] }}\n");
+    assert_eq!(of(&format!("[[grab]]\nnodes = 'top'\n{}", path(4))), late("grab[0]", "4"));
+    let ball = "[[obstacle]]\nkind = 'sphere'\ncentre = [0, 9, 0]\nradius = 1\n";
+    assert_eq!(of(&format!("{ball}{}", path(0))), [""; 0]);
+    assert_eq!(of(&format!("{ball}{}", path(4))), late("obstacle[1].path", "4"));
+}
+
+#[test]
+fn rows_of_frames_that_end_no_interval() {
+    let of = |every: &str, charts: &str| {
+        let text = CUBE.replace("duration = 1", &format!("duration = 1\nframes_per_second = 60\nevery = {every}"));
+        warnings(&format!("{text}model = {{ kind = 'shape-based', young = 1e5 }}\n[view]\ncharts = ['{charts}']"))
+    };
+    let told = of("0.0133", "contact_force");
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].0.starts_with("`time.every` does not divide the time between frames"), "{told:?}");
+    assert_eq!(told[0].1, "write every = 0.0166666666667");
+    assert_eq!(of("0.0166666666667", "contact_force"), []);
+    assert_eq!(of("0.0041666666666667", "contact_force"), []);
+    assert_eq!(of("0.0133", "energy"), []);
+}
+
+#[test]
+fn angles_in_degrees() {
+    let of = |text: &str| warnings(&format!("{CUBE}model = {{ kind = 'shape-based', young = 1e5 }}\n{text}"));
+    let slope = |angle: &str| {
+        let place = "kind = 'box'\ncentre = [0, -9, 0]\nsize = [1, 1, 1]";
+        of(&format!("[[obstacle]]\n{place}\nrotation = {{ axis = [0, 0, 1], angle = {angle} }}"))
+    };
+    assert_eq!(slope("-6.28"), []);
+    let told = |key: &str, angle: &str, right: &str| {
+        let message = format!("`{key}` is {angle} rad, more than a whole turn");
+        vec![(message, format!("angles are in radians: {angle}° are {right}"))]
+    };
+    assert_eq!(slope("-45"), told("obstacle[1].rotation.angle", "-45", "-0.7854"));
+    assert_eq!(of("[view.camera]\nazimuth = 30"), told("view.camera.azimuth", "30", "0.5236"));
+    let turned = CUBE.replace("density", "lowest = 0\nrotation = { axis = [0, 0, 1], angle = 90 }\ndensity");
+    let turned = warnings(&format!("{turned}model = {{ kind = 'shape-based', young = 1e5 }}"));
+    assert_eq!(turned, told("body.rotation.angle", "90", "1.571"));
+}

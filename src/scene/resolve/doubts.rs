@@ -2,16 +2,22 @@
 
 use super::Typed;
 use crate::look::{View, font};
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::captions::rounded;
+use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, ends, quoted, short};
+use crate::scene::file::{MotionPath, SceneFile, ShapeFile};
 use crate::scene::mesh::longest;
 use crate::scene::{Run, Scene, SceneBody};
+use std::f64::consts::TAU;
 
 /// Warns of all that is probably not meant.
 pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
     warn_of_missing_letters(scene, report);
     warn_of_unused(scene, typed, report);
     warn_of_time(scene, report);
+    warn_of_uneven_rows(scene, report);
+    warn_of_late(scene, typed, report);
+    warn_of_degrees(scene, typed, report);
     warn_of_steps(scene, report);
     match &scene.contacts {
         Some(contacts) => super::contact::warn_of_ways(scene, contacts, report),
@@ -100,6 +106,65 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
         let message = format!("{steps} steps of all runs × {elements} take about {long} on one processor");
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
         report.warn(&key_path!["time", "duration"], message, help);
+    }
+}
+
+/// Warns of rows of frames that do not end an interval of mean forces.
+fn warn_of_uneven_rows(scene: &Scene, report: &mut Collector<'_>) {
+    let Some(every) = scene.every.filter(|_| scene.keeps_forces()) else { return };
+    let rows = 1.0 / (scene.frames_per_second * every);
+    if (rows - rows.round()).abs() > 1e-6 * rows {
+        let message = "`time.every` does not divide the time between frames, so that rows of frames repeat the forces of the row before".to_owned();
+        let even = 1.0 / (scene.frames_per_second * rows.round().max(1.0));
+        report.warn(&key_path!["time", "every"], message, format!("write every = {}", rounded(even, 12)));
+    }
+}
+
+/// Warns of what begins only when the scene has ended.
+fn warn_of_late(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    /// The time (s) until which an obstacle stands still: the pose of the first key holds from the start.
+    fn first_move(path: &MotionPath) -> Option<f64> {
+        path.keys.get(1).and(path.keys.first()).map(|key| key.time)
+    }
+    let SceneFile { load, hold, grab, obstacle, .. } = typed.file;
+    let loads =
+        load.iter().enumerate().filter_map(|(at, load)| Some((key_path!["load", at].to_vec(), load.as_ref()?.begin())));
+    let holds =
+        hold.iter().enumerate().filter_map(|(at, hold)| Some((key_path!["hold", at].to_vec(), hold.as_ref()?.from)));
+    let grabs = grab
+        .iter()
+        .enumerate()
+        .filter_map(|(at, grab)| Some((key_path!["grab", at].to_vec(), grab.as_ref()?.path.keys.first()?.time)));
+    let paths = obstacle.iter().enumerate().filter_map(|(at, obstacle)| {
+        Some((key_path!["obstacle", at, "path"].to_vec(), first_move(obstacle.as_ref()?.path.as_ref()?)?))
+    });
+    let begins = loads.chain(holds).chain(grabs).chain(paths);
+    for (path, time) in begins.filter(|&(_, time)| time >= scene.duration && scene.duration > 0.0) {
+        let (name, [time, end]) = (written(&path), [time, scene.duration].map(short));
+        let message = format!("`{name}` does nothing: it begins at {time} s, and the scene ends at {end} s");
+        report.warn(&path, message, "let it begin earlier, or make `duration` longer");
+    }
+}
+
+/// Warns of angles of more than a whole turn that turn something once.
+fn warn_of_degrees(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let bodies = typed.file.body.iter().enumerate();
+    let bodies = bodies.filter_map(|(at, body)| {
+        let angle = body.as_ref()?.rotation.as_ref()?.angle;
+        Some((key_path![typed.place(at); "rotation", "angle"], angle))
+    });
+    let obstacles =
+        typed.file.obstacle.iter().enumerate().filter_map(|(at, obstacle)| match &obstacle.as_ref()?.shape {
+            ShapeFile::Box { rotation: Some(rotation), .. } => {
+                Some((key_path!["obstacle", at, "rotation", "angle"].to_vec(), rotation.angle))
+            }
+            _ => None,
+        });
+    let camera = (key_path!["view", "camera", "azimuth"].to_vec(), scene.view.camera.azimuth);
+    for (path, angle) in bodies.chain(obstacles).chain([camera]).filter(|(_, angle)| angle.abs() > TAU) {
+        let (name, [turned, degrees]) = (written(&path), [angle, rounded(angle.to_radians(), 4)].map(short));
+        let message = format!("`{name}` is {turned} rad, more than a whole turn");
+        report.warn(&path, message, format!("angles are in radians: {turned}° are {degrees}"));
     }
 }
 
