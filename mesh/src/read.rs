@@ -7,6 +7,7 @@ mod abaqus;
 mod arrays;
 mod builder;
 mod cells;
+mod collapsed;
 mod content;
 mod copies;
 mod gltf;

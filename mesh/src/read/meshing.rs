@@ -102,8 +102,8 @@ impl Cells {
 
     /// A volume of ordered cells.
     fn ordered(mut self, parts: Parts, dimension: Dimension, solids: Solids) -> Result<Volume, ReadError> {
-        let (lists, turned, note) = parts.finished(&self.corners, &self.points)?;
-        self.notes.extend(note);
+        let (lists, turned, notes) = parts.finished(&self.corners, &self.points)?;
+        self.notes.extend(notes);
         Ok(self.volume(dimension, solids, &lists, turned))
     }
 

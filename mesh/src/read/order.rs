@@ -1,6 +1,7 @@
 //! Cells of files in the order of elements.
 
 use super::ReadError;
+use super::collapsed::simpler;
 use glam::DVec3;
 use localshape_sim::geometry::volume_by_faces;
 use localshape_sim::{Dimension, ElementKind, IndexLists};
@@ -20,13 +21,22 @@ pub(super) struct Parts {
     turned: usize,
     /// Cells without area or volume: how many, and the first in the file.
     flat: (usize, usize),
+    /// Cells with repeated corners that are simpler ones.
+    simpler: usize,
     known: HashSet<[u32; 8]>,
 }
 
 impl Parts {
     /// The parts of a volume with about this number of cells.
     pub(super) fn new(dimension: Dimension, cells: usize) -> Self {
-        Self { dimension, cells: IndexLists::default(), turned: 0, flat: (0, 0), known: HashSet::with_capacity(cells) }
+        Self {
+            dimension,
+            cells: IndexLists::default(),
+            turned: 0,
+            flat: (0, 0),
+            simpler: 0,
+            known: HashSet::with_capacity(cells),
+        }
     }
 
     /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group.
@@ -41,7 +51,12 @@ impl Parts {
                 return;
             }
         }
-        let mut is_flat = cell.len() < least || sorted.windows(2).any(|pair| pair[0] == pair[1]);
+        let repeats = sorted.windows(2).any(|pair| pair[0] == pair[1]);
+        if let Some((kind, mut cell)) = Some(kind).filter(|_| repeats).and_then(|kind| simpler(kind, cell)) {
+            self.simpler += 1;
+            return self.add(at, kind, &mut cell, points);
+        }
+        let mut is_flat = cell.len() < least || repeats;
         if !is_flat && kind != ElementKind::Other {
             is_flat = !self.order(kind, cell, points);
         }
@@ -87,7 +102,7 @@ impl Parts {
         true
     }
 
-    /// The elements, how many were turned over, and what is told of those that are left out.
+    /// The elements, how many were turned over, and what is told of those that are simpler than listed, or left out.
     ///
     /// # Errors
     /// If all are left out.
@@ -95,10 +110,17 @@ impl Parts {
         self,
         cells: &IndexLists,
         points: &[DVec3],
-    ) -> Result<(IndexLists, usize, Option<String>), ReadError> {
-        let (flat, first) = self.flat;
+    ) -> Result<(IndexLists, usize, Vec<String>), ReadError> {
+        let ((flat, first), simpler) = (self.flat, self.simpler);
+        let mut notes = Vec::new();
+        if simpler > 0 {
+            let [cells, are] = if simpler == 1 { ["a cell", "is"] } else { ["cells", "are"] };
+            notes.push(format!(
+                "has {cells} with repeated corners, which {are} read as wedges, pyramids or tetrahedra: {simpler}"
+            ));
+        }
         if flat == 0 {
-            return Ok((self.cells, self.turned, None));
+            return Ok((self.cells, self.turned, notes));
         }
         let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
         // Files number points and cells in ways of their own.
@@ -109,11 +131,11 @@ impl Parts {
             let message = format!("has only cells without {what}: the first has corners at {corners}");
             return Err(ReadError::new(message, "mesh the object again"));
         }
-        let note = match flat {
+        notes.push(match flat {
             1 => format!("has a cell without {what}, which is left out: it has corners at {corners}"),
             _ => format!("has {flat} cells without {what}, which are left out: the first has corners at {corners}"),
-        };
-        Ok((self.cells, self.turned, Some(note)))
+        });
+        Ok((self.cells, self.turned, notes))
     }
 }
 

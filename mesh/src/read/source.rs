@@ -46,6 +46,11 @@ impl<'b> Source<'b> {
         Self { bytes, at: start, end, coding: Coding::Text }
     }
 
+    /// The whole file.
+    pub(super) fn whole(&self) -> &'b [u8] {
+        self.bytes
+    }
+
     pub(super) fn rest(&self) -> &'b [u8] {
         &self.bytes[self.at..self.end]
     }
@@ -116,8 +121,10 @@ impl<'b> Source<'b> {
     pub(super) fn next_line(&mut self, comment: u8) -> Option<Self> {
         while !self.is_done() {
             let start = self.at;
-            while self.line().ends_with(b"\\") && self.at < self.end {}
-            if self.bytes[start] != comment {
+            // Comments are not continued.
+            let is_comment = self.bytes[start] == comment;
+            while self.line().ends_with(b"\\") && self.at < self.end && !is_comment {}
+            if !is_comment {
                 return Some(Self { at: start, end: self.at, ..self.clone() });
             }
         }

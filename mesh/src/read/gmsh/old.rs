@@ -13,7 +13,8 @@ impl Reader<'_, '_> {
         for _ in 0..count {
             let tag = self.int("the number of a node")?;
             let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
-            self.tags.push(tag, self.builder.point_at(point, at)?);
+            let index = self.builder.point_at(point, at)?;
+            self.tags.push_point((tag, index), &self.builder.cells.points, (&self.source, at))?;
         }
         self.source.coding = Coding::Text;
         Ok(())

@@ -182,3 +182,40 @@ fn refusals_of_abaqus_files_say_where_and_what_to_do() {
     }
     assert_eq!(volume(format!("{nodes}{cell}"), Format::Abaqus).cells.len(), 1);
 }
+
+/// A box of 2 × 1 × 3 of six tetrahedra.
+const NODES: &str = "*NODE\n1, 0, 0, 0\n2, 2, 0, 0\n3, 2, 1, 0\n4, 0, 1, 0\n5, 0, 0, 3\n6, 2, 0, 3\n7, 2, 1, 3\n8, 0, 1, 3\n9, 4, 0, 0\n10, 4, 0, 3\n";
+const TETRAHEDRA: [&str; 2] =
+    ["1, 1, 2, 3, 7\n2, 1, 3, 4, 7\n3, 1, 4, 8, 7\n", "4, 1, 8, 5, 7\n5, 1, 5, 6, 7\n6, 1, 6, 2, 7\n"];
+
+#[test]
+fn comments_and_commas_at_ends_of_lines_take_nothing_with_them() {
+    let [first, second] = TETRAHEDRA;
+    let text = format!(
+        "{NODES}*ELEMENT, TYPE=C3D4, ELSET=A,\n{first}** job folder: C:\\temp\\\n*ELEMENT, TYPE=C3D4,\nELSET=B\n{second}*NSET, NSET=fix,\n1,2,3\n4,5\n"
+    );
+    let found = volume(&text, Format::Abaqus);
+    assert!((whole(&found) - 6.0).abs() < 1e-12, "{}", whole(&found));
+    assert_eq!(groups(&found), [("A", 6), ("B", 6), ("fix", 5)]);
+}
+
+#[test]
+fn numbers_that_are_given_twice_are_refused() {
+    let [first, second] = TETRAHEDRA;
+    let all = format!("{NODES}*ELEMENT, TYPE=C3D4\n{first}{second}");
+    let told = refusal(format!("{all}*NODE\n7, 2, 1, 9\n"), Format::Abaqus);
+    assert_eq!(told, "has node 7 again in line 20, with other contents (give each node a number of its own)");
+    let told = refusal(format!("{all}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 6\n"), Format::Abaqus);
+    assert_eq!(told, "has element 1 again in line 20, with other contents (give each element a number of its own)");
+    let same = volume(format!("{all}*NODE\n7, 2, 1, 3\n"), Format::Abaqus);
+    assert!((whole(&same) - 6.0).abs() < 1e-12);
+}
+
+#[test]
+fn hexahedra_with_corners_in_common_are_wedges() {
+    let elements = "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4,5,6,7,8\n2, 2,9,3,3,6,10,7,7\n";
+    let found = volume(format!("{NODES}{elements}"), Format::Abaqus);
+    assert!((whole(&found) - 9.0).abs() < 1e-12, "{}", whole(&found));
+    let note = "has a cell with repeated corners, which is read as wedges, pyramids or tetrahedra: 1";
+    assert_eq!((found.cells.len(), &found.notes[..]), (2, &[note.to_owned()][..]));
+}
