@@ -5,13 +5,18 @@ use super::*;
 #[test]
 fn ticks_are_few_and_round() {
     type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
-    let expected: [Case; 24] = [
+    let expected: [Case; 29] = [
         (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
         (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
         (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),
         (Kind::Count, [0.0, 27.0], "", 4, &["0", "10", "20", "30"], ""),
         (Kind::Count, [0.0, 27.0], "", 2, &["0", "30"], ""),
-        (Kind::Value, [0.0, 0.102], "m", 4, &["0", "50", "100"], "mm"),
+        (Kind::Count, [0.0, 9.0], "", 3, &["0", "5", "10"], ""),
+        (Kind::Value, [0.0, 0.102], "m", 4, &["0", "40", "80", "120"], "mm"),
+        (Kind::Value, [0.0, 7.28], "N", 3, &["0", "4", "8"], "N"),
+        (Kind::Value, [0.0, 225.0], "N", 3, &["0", "250"], "N"),
+        (Kind::Value, [0.0, 225.0], "N", 4, &["0", "100", "200", "300"], "N"),
+        (Kind::Value, [0.0, 62.0], "N", 4, &["0", "25", "50", "75"], "N"),
         (Kind::Value, [0.0, 3136.0], "J", 4, &["0", "2", "4"], "kJ"),
         (Kind::Value, [0.0, 1.55], "", 3, &["0", "1", "2"], ""),
         (Kind::Count, [0.0, 85.0], "", 3, &["0", "50", "100"], ""),
@@ -50,8 +55,8 @@ fn whatever_the_range_it_is_inside_and_ticks_rise() {
                     assert!((2..=most).contains(&axis.ticks.len()), "{}", told());
                     assert!(axis.ticks.windows(2).all(|two| two[0] < two[1]), "{}", told());
                     assert!(axis.ticks.iter().all(|&tick| (-1e-6..=1.0 + 1e-6).contains(&axis.share(tick))));
-                    assert!((-1e-6..=0.24).contains(&axis.share(low)), "{}", told());
-                    assert!((0.76..=1.0 + 1e-6).contains(&axis.share(high)), "{}", told());
+                    assert!((-1e-6..=0.34).contains(&axis.share(low)), "{}", told());
+                    assert!((0.66..=1.0 + 1e-6).contains(&axis.share(high)), "{}", told());
                     let distinct: std::collections::BTreeSet<_> = axis.texts.iter().collect();
                     assert_eq!(distinct.len(), axis.texts.len(), "{}", told());
                 }

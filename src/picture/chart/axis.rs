@@ -35,7 +35,9 @@ pub(in crate::picture) struct Stretch {
     pub unit: String,
 }
 
-/// An axis extends to the next round number up to one of these parts of its range away, the first with few ticks, otherwise by the second
+/// An axis ends at round numbers that enclose its values, if these fill at least this part of it.
+const FULL: f64 = 0.66;
+/// Otherwise it extends to the next round number up to one of these parts of its range away, the first with few ticks, or else by the last
 /// part, so that no curve runs along its border.
 const NEAR: [f64; 3] = [0.3, 0.13, 0.0];
 const BEYOND: f64 = 0.05;
@@ -153,23 +155,14 @@ struct Division {
     decimals: usize,
     /// The number of ticks, plus one for each end with a tick.
     worth: usize,
+    /// The part of the range that the values fill.
+    filled: f64,
 }
 
-/// The division with most ticks, preferably with ticks at its ends. If these are fixed, ticks at both ends take
-/// precedence over their number.
-fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
-    let highest = libm::floor(libm::log10(high - low));
-    let digits: &[f64] = match kind {
-        Kind::Count => &[5.0, 3.0, 2.0, 1.0],
-        Kind::Value => &[5.0, 2.0, 1.0],
-        Kind::Fixed => &[5.0, 2.5, 2.0, 1.0],
-    };
-    // Counts have no fractions.
-    let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
-    let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
-    // With or without an extension to a round number farther or nearer.
-    let ways = steps.flat_map(|(digit, power)| NEAR.map(|near| (digit, power, near)));
-    let divisions = ways.map(|(digit, power, near)| {
+impl Division {
+    /// The division of values with a step of a digit times a power of ten. It extends to the next round number up to a part `near` of the values
+    /// away.
+    fn new(kind: Kind, [low, high]: [f64; 2], (digit, power): (f64, f64), near: f64, most: usize) -> Self {
         let step = times_ten(digit, power);
         let [from, to] = [low / step, high / step];
         let [mut first, mut last] = [libm::ceil(from - 1e-6), libm::floor(to + 1e-6)];
@@ -193,20 +186,58 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         let worth = count + at_end(first, range[0]) + at_end(last, range[1]);
         let ticks = (0..count.min(2 * most + 1)).map(|at| (first + at as f64) * step).collect();
         let decimals = (-power).clamp(0.0, 300.0) as usize + usize::from(digit == 2.5 && power <= 0.0);
-        Division { range, ticks, decimals, worth }
-    });
-    let mut all: Vec<_> = divisions.collect();
-    let best = (0..all.len()).filter(|&at| (2..=most).contains(&all[at].ticks.len()));
-    let rank = |&at: &usize| {
-        let (worth, count) = (all[at].worth, all[at].ticks.len());
+        Self { range, ticks, decimals, worth, filled: (high - low) / (range[1] - range[0]) }
+    }
+
+    /// How good it is: among equals three ticks are better than two, and then ticks at the ends, 0, 5, 10 instead of 0, 3, 6, 9.
+    fn rank(&self, kind: Kind) -> [usize; 3] {
+        let (worth, count) = (self.worth, self.ticks.len());
         match kind {
-            Kind::Fixed => (usize::from(worth == count + 2), count, 0),
-            // Among equals, three ticks are better than two, and then ticks at the ends: 0, 5, 10 instead of 0, 3, 6,
-            // 9.
-            _ => (worth, count.min(3), worth - count),
+            Kind::Fixed => [usize::from(worth == count + 2), count, 0],
+            _ => [worth, count.min(3), worth - count],
         }
+    }
+}
+
+/// The division of values by few round numbers that enclose them: another tick is worth a tenth of the axis.
+fn enclosing(kind: Kind, ends: [f64; 2], highest: f64, most: usize) -> Option<Division> {
+    let digits: &[f64] = if kind == Kind::Count { &[5.0, 2.0, 1.0, 4.0, 3.0] } else { &[5.0, 2.0, 1.0, 4.0, 3.0, 2.5] };
+    let powers = [1.0, 0.0, -1.0].map(|more| highest + more);
+    let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
+    let whole = steps.filter(|&(_, power)| kind != Kind::Count || power >= 0.0);
+    let all = whole.map(|step| (step.0, Division::new(kind, ends, step, 1.0, most)));
+    let good = all.filter(|(digit, division)| {
+        let few = if [5.0, 2.0, 1.0].contains(digit) { most } else { most.min(4) };
+        (2..=few).contains(&division.ticks.len()) && division.filled >= FULL
+    });
+    let worth = |division: &Division| division.filled + 0.1 * division.ticks.len().min(5) as f64;
+    // The first of equals.
+    good.map(|(_, division)| division)
+        .reduce(|best, other| if worth(&other) > worth(&best) + 1e-9 { other } else { best })
+}
+
+/// The division by round numbers that enclose the values, or else with most ticks, preferably with ticks at its ends. If these are fixed, ticks
+/// at both ends take precedence over their number.
+fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
+    let highest = libm::floor(libm::log10(high - low));
+    if let Some(found) =
+        Some(kind).filter(|&kind| kind != Kind::Fixed).and_then(|kind| enclosing(kind, [low, high], highest, most))
+    {
+        return found;
+    }
+    let digits: &[f64] = match kind {
+        Kind::Count => &[5.0, 3.0, 2.0, 1.0],
+        Kind::Value => &[5.0, 2.0, 1.0],
+        Kind::Fixed => &[5.0, 2.5, 2.0, 1.0],
     };
-    let best = best.rev().max_by_key(rank);
+    // Counts have no fractions.
+    let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
+    let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
+    // With or without an extension to a round number farther or nearer.
+    let ways = steps.flat_map(|step| NEAR.map(|near| (step, near)));
+    let mut all: Vec<_> = ways.map(|(step, near)| Division::new(kind, [low, high], step, near, most)).collect();
+    let best = (0..all.len()).filter(|&at| (2..=most).contains(&all[at].ticks.len()));
+    let best = best.rev().max_by_key(|&at| all[at].rank(kind));
     // Some ranges have too many ticks or too few with every step. Then every second of too many is kept.
     let crowded = || (0..all.len()).filter(|&at| all[at].ticks.len() > most).min_by_key(|&at| all[at].ticks.len());
     let best = best.or_else(crowded).unwrap_or(0);
