@@ -328,8 +328,8 @@ pub struct Style {
     pub font: FontFiles,
     /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Long titles are
     /// wrapped. `localshape check` lists other words without room, which are shortened or left out. The smallest text
-    /// is a fiftieth of the height of a wide picture, or smaller with a scale below 1. Type below 5 pt is refused in
-    /// pictures for print.
+    /// is a fiftieth of the height of a wide picture, or smaller with a scale below 1. Above 1.5 times the usual size
+    /// names and titles grow less than other text. Type below 5 pt is refused in pictures for print.
     #[schemars(with = "TextScaleFile")]
     pub text_scale: f64,
 }

@@ -327,8 +327,12 @@ impl Writer<'_> {
         let corner = [first, room.top + lines.caption];
         tally.draw(states, self.palette, self.scale, tally_room, corner, &mut self.marks);
         let [count, all] = [count, turned_over.len()].map(number::count);
-        let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
-        self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
+        // The widest count decides, so that it is the same in all frames. A number with an ellipsis is another number.
+        let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
+        let wordings = [(format!("{all} of {all}"), format!("{count} of {all}")), (all, count)];
+        if let Some((_, count)) = wordings.into_iter().find(|(widest, _)| wide(widest) <= free) {
+            self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
+        }
         let (also, what) = if state == TURNED_OVER { (flattened, "flat") } else { (over, TURNED_OVER) };
         let with_others = (also > 0).then(|| format!("{state}, {} {what}", number::count(also)));
         let of_bodies = of_bodies(state, names, tally.counts(which));
@@ -337,6 +341,9 @@ impl Writer<'_> {
         // What stands here in one frame stands here in all.
         let state = of_bodies.filter(|text| fits(text, free)).or(with_others).unwrap_or_else(|| state.to_owned());
         let free = free.max(end - left);
+        if !Scale::legible(caption) {
+            return;
+        }
         let state = self.fonts.shortened(&state, Weight::Regular, caption, free);
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
     }

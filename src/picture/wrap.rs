@@ -9,7 +9,15 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room
     let text: String = text.chars().filter(|&character| !is_invisible(character)).collect();
     for paragraph in text.lines() {
         let (mut line, mut wide) = (String::new(), 0.0);
-        for word in &words(paragraph) {
+        // A number is parted from its unit only where both are too wide for a line.
+        let parted = |word: String| -> Vec<String> {
+            if fonts.width(&word, weight, size) <= room {
+                vec![word]
+            } else {
+                word.split(' ').map(str::to_owned).collect()
+            }
+        };
+        for word in &words(paragraph).into_iter().flat_map(parted).collect::<Vec<_>>() {
             let space = if line.is_empty() { "" } else { " " };
             let added = fonts.width(space, weight, size) + fonts.width(word, weight, size);
             if wide + added <= room {
@@ -33,6 +41,11 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room
         lines.push(line);
     }
     lines
+}
+
+/// The width of the widest word of a text (px) at a weight and a size, where a number and its unit are one.
+pub(super) fn widest_word(fonts: &Fonts, text: &str, weight: Weight, size: f64) -> f64 {
+    words(text).iter().map(|word| fonts.width(word, weight, size)).fold(0.0, f64::max)
 }
 
 /// The words of a paragraph; a number and a short word after it, such as a unit, are one.

@@ -12,8 +12,6 @@ use crate::picture::text::{Fonts, Weight};
 const LEADER: f64 = 0.7;
 /// Lengths of dots and gaps of thin lines (px in the reference picture).
 pub(super) const DOTS: [f64; 2] = [HAIR, FREE];
-/// The least room for names (sizes of type).
-const LEAST_ROOM: f64 = 3.0;
 
 /// A name at the end of a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,27 +26,24 @@ pub struct Name {
 
 /// Names of runs in a room beside charts.
 #[derive(Clone, Debug)]
-pub(super) struct Shortened {
-    /// A name for each run, shortened to the room.
+pub(super) struct EndNames {
+    /// The name of each run.
     names: Vec<String>,
     /// Their width right of the chart, with the gap (px).
     pub width: f64,
 }
 
-impl Shortened {
-    /// The names of runs in a room of a width (px). `None` for a single run, which needs no name, and if no
-    /// name would be legible.
+impl EndNames {
+    /// The names of runs in a room of a width (px). `None` for a single run, which needs no name, and if not all names have room: samples of
+    /// lines beside the names of panels and of rows are a key without them.
     pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, width: f64) -> Option<Self> {
         let size = SMALL * unit;
-        let room = width - BESIDE * unit;
-        let has_room = room >= LEAST_ROOM * size && Scale::legible(size);
+        let widest = series.iter().map(|one| fonts.width(&one.name, Weight::Regular, size)).fold(0.0, f64::max);
+        let has_room = widest <= width - BESIDE * unit && Scale::legible(size);
         if series.iter().all(|one| one.points.is_empty()) || series.len() < 2 || !has_room {
             return None;
         }
-        let whole: Vec<_> = series.iter().map(|one| &*one.name).collect();
-        let short = |name: &&str| fonts.told_apart(name, &whole, Weight::Regular, size, room);
-        let names: Vec<_> = whole.iter().map(short).collect();
-        let widest = names.iter().map(|name| fonts.width(name, Weight::Regular, size)).fold(0.0, f64::max);
+        let names = series.iter().map(|one| one.name.to_string()).collect();
         Some(Self { names, width: BESIDE * unit + widest })
     }
 

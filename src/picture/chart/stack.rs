@@ -3,7 +3,7 @@
 
 use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
-use super::names::{Shortened, fitting};
+use super::names::{EndNames, fitting};
 use super::series::{self, Series};
 use super::{Chart, PlotArea};
 use crate::look::Plot;
@@ -40,7 +40,7 @@ struct Quantity {
     /// The number of runs shown; 0 if each body has its series.
     runs: usize,
     /// The names at the ends of curves, if there is room for them.
-    ends: Option<Shortened>,
+    ends: Option<EndNames>,
     /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
     /// Whether the axis to the right is that of a displacement, and its range (m).
@@ -110,7 +110,7 @@ impl Quantity {
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
             range: series::range(&series, counted.is_none()),
             against: (!plot.is_over_time()).then(|| series::ways(&series)),
-            ends: Shortened::new(writer.fonts, &series, writer.scale.type_unit(), room),
+            ends: EndNames::new(writer.fonts, &series, writer.scale.type_unit(), room),
             series,
             runs,
             extent: scene.extent(),

@@ -11,6 +11,7 @@ use crate::picture::legend::Legend;
 use crate::picture::text::{Fonts, Weight};
 use crate::runner::history::History;
 use crate::scene::Scene;
+use std::ops::RangeInclusive;
 
 /// The words of a scene.
 pub(super) struct Words<'a> {
@@ -52,15 +53,36 @@ impl<'a> Words<'a> {
             legend: legend.map(|legend| legend.height),
             ..Wanted::default()
         };
-        let mut layout = Layout::new(view, panels, columns, wanted);
-        // If names are long or type is large, the clock is beside a short title, or in a row of its own.
         let room = width - 2.0 * scale.margin() - scale.gap() - writer.clock_width(scale, &view.clock);
-        let title =
-            matches!(&titles[0][..], [line] if self.fonts.width(line, Weight::SemiBold, scale.heading()) < room);
-        let row = if title { Part::Title } else { Part::Clock };
-        let clock_above = self.is_crowded(&layout, runs, columns).then_some(row);
-        if clock_above == Some(Part::Clock) {
-            layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
+        let laid_out = |wanted: Wanted| {
+            let layout = Layout::new(view, panels, columns, wanted);
+            // If names are long or type is large, the clock is beside a short title, or in a row of its own.
+            let has_title = wanted.titles[0] > 0;
+            let title = matches!(&titles[0][..], [line] if has_title
+                && self.fonts.width(line, Weight::SemiBold, scale.heading()) < room);
+            let row = if title { Part::Title } else { Part::Clock };
+            let clock_above = self.is_crowded(&layout, runs, columns).then_some(row);
+            match clock_above {
+                Some(Part::Clock) => {
+                    (Layout::new(view, panels, columns, Wanted { clock: true, ..wanted }), clock_above)
+                }
+                _ => (layout, clock_above),
+            }
+        };
+        // Where panels have no room for their names, charts go, and then the title.
+        let (mut layout, mut clock_above) = laid_out(wanted);
+        let without_charts = Wanted { charts: [0; 2], own_axes: 0, ..wanted };
+        let without_title = Wanted { titles: [0; 2], ..without_charts };
+        let lacks_names = |layout: &Layout| view.labels.name && layout.written.left_out.contains(&Part::Name);
+        if lacks_names(&layout) {
+            let fewer = [(without_charts, false), (without_title, true)].map(|(fewer, title)| (laid_out(fewer), title));
+            let chosen = fewer.into_iter().find(|((layout, _), _)| !lacks_names(layout));
+            if let Some(((found, clock), without_title)) = chosen {
+                (layout, clock_above) = (found, clock);
+                let charts = std::iter::repeat_n(Part::Chart, wanted.charts[0]);
+                let title = [Part::Title].into_iter().filter(|_| without_title && wanted.titles[0] > 0);
+                layout.parts.left_out.extend(charts.chain(title));
+            }
         }
         let legend = legend.filter(|_| layout.parts.get(Part::Legend).is_some());
         PageWords { titles, legend, layout, clock_above }
@@ -178,39 +200,53 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The words without room in the pictures of a scene.
+/// The words without room in the pictures of a scene, in every arrangement that its course may ask for.
 pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let composer = Composer::new(scene, &History::default());
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let words = composer.words();
-    // A thumbnail needs no words.
-    if !Scale::legible(Layout::around(&scene.view).title()) {
-        return Vec::new();
-    }
     let columns = composer.columns(&runs);
     // The course of the scene may change the arrangement, between that of the start and side by side.
     let last = if scene.view.columns.is_none() { runs.len().max(columns) } else { columns };
-    let (mut told, mut shortened) = words.left_out(&runs, columns);
-    for columns in columns + 1..=last {
-        let (there, also) = words.left_out(&runs, columns);
-        told.retain(|one| there.contains(one));
-        shortened.iter_mut().zip(also).for_each(|(of, also)| of.retain(|run| also.contains(run)));
+    composer.lacks(&runs, columns..=last)
+}
+
+impl Composer<'_> {
+    /// The words without room in its pictures.
+    pub(crate) fn left_out(&self) -> Vec<String> {
+        let runs: Vec<_> = (0..self.scene.runs.len()).collect();
+        let columns = self.columns(&runs);
+        self.lacks(&runs, columns..=columns)
     }
-    for (of, what) in shortened.iter().zip(["name", "description"]) {
-        match of[..] {
-            [] => {}
-            [run] => told.push(format!("the {what} of run `{run}` is shortened")),
-            [first, .., last] => {
-                told.push(format!("the {what}s of {} runs are shortened, of `{first}` to `{last}`", of.len()));
+
+    /// What has no room in pictures of runs with all of these numbers of columns.
+    fn lacks(&self, runs: &[usize], columns: RangeInclusive<usize>) -> Vec<String> {
+        let words = self.words();
+        // A thumbnail needs no words.
+        if !Scale::legible(Layout::around(&self.scene.view).title()) {
+            return Vec::new();
+        }
+        let (mut told, mut shortened) = words.left_out(runs, *columns.start());
+        for columns in columns.clone().skip(1) {
+            let (there, also) = words.left_out(runs, columns);
+            told.retain(|one| there.contains(one));
+            shortened.iter_mut().zip(also).for_each(|(of, also)| of.retain(|run| also.contains(run)));
+        }
+        for (of, what) in shortened.iter().zip(["name", "description"]) {
+            match of[..] {
+                [] => {}
+                [run] => told.push(format!("the {what} of run `{run}` is shortened")),
+                [first, .., last] => {
+                    told.push(format!("the {what}s of {} runs are shortened, of `{first}` to `{last}`", of.len()));
+                }
             }
         }
+        let lacks_bar: Vec<_> = columns.map(|columns| self.lacks_bar(runs, columns)).collect();
+        if lacks_bar.contains(&true) {
+            let may = if lacks_bar.contains(&false) { "may be" } else { "is" };
+            told.push(format!("the scale bar {may} left out"));
+        }
+        told
     }
-    let lacks_bar: Vec<_> = (columns..=last).map(|columns| composer.lacks_bar(&runs, columns)).collect();
-    if lacks_bar.contains(&true) {
-        let may = if lacks_bar.contains(&false) { "may be" } else { "is" };
-        told.push(format!("the scale bar {may} left out"));
-    }
-    told
 }
 
 /// The size of the words of a scene (px) if it is too small to be read, so that they are left out.

@@ -83,14 +83,14 @@ impl Part {
 
     /// The height of a line of it (px).
     pub(super) fn height(self, scale: Scale) -> f64 {
-        let step = match self {
-            Self::Title => MARGIN,
-            Self::Clock | Self::Numbers => NAME_ROW,
-            Self::Label(_) | Self::Note(_) => SHORT,
+        let row = match self {
+            Self::Title => MARGIN * scale.name_unit(),
+            Self::Clock | Self::Numbers => NAME_ROW * scale.name_unit(),
+            Self::Label(_) | Self::Note(_) => SHORT * scale.type_unit(),
             Self::Sample(_) => return BESIDE * scale.type_unit(),
-            _ => ROW,
+            _ => ROW * scale.type_unit(),
         };
-        (step * scale.type_unit()).max(LINE * self.size(scale))
+        row.max(LINE * self.size(scale))
     }
 
     /// The box for a line of it. Type that cannot be read has no room.
@@ -355,7 +355,7 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> WordsShown {
     let mut solved = tree::column(&nodes, [0.0, 0.0, 0.0, height]);
     // Rows that cannot be read stay empty, and rows below a name without room.
     let sizes = [(Part::Name, scale.title()), (Part::Second, scale.caption()), (Part::Events, scale.caption())];
-    let sizes = sizes.into_iter().chain([(Part::Numbers, scale.caption())]);
+    let sizes = sizes.into_iter().chain([(Part::Numbers, scale.title())]);
     let nameless = |part| solved.get(Part::Name).is_none() && part != Part::Numbers;
     let empty = sizes.filter(|&(part, size)| solved.get(part).is_some() && (nameless(part) || !Scale::legible(size)));
     solved.left_out.extend(empty.map(|(part, _)| part).collect::<Vec<_>>());
@@ -371,7 +371,8 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> WordsShown {
             clock: clock && names,
             count: count && numbers,
             number: number && numbers,
-            scale_bar: scale_bar && numbers,
+            // A count says something without the small words below it.
+            scale_bar: scale_bar && numbers && Scale::legible(scale.caption()),
             ..view.labels
         },
         second: has(Part::Second),
@@ -437,6 +438,15 @@ impl Scale {
         self.of_type(self.unit)
     }
 
+    /// The same for names, clocks and counts, which are larger than other type. Where that is large, as in small pictures for print, they grow
+    /// less.
+    fn name_unit(self) -> f64 {
+        /// The factor of type up to which names grow with it, and their least size relative to larger type.
+        const GROWN: f64 = 1.5;
+        const LARGER: f64 = 1.25;
+        self.type_unit() * (GROWN / self.type_factor).clamp(LARGER * steps::TEXT / steps::NAME, 1.0)
+    }
+
     /// A length, scaled like the type.
     pub(super) fn of_type(self, length: f64) -> f64 {
         length * self.type_factor
@@ -444,8 +454,10 @@ impl Scale {
 
     /// The heights of the rows of a name, a second line and events in a panel (px).
     fn rows(self) -> [f64; 3] {
-        let row = |step: f64, size: f64| (step * self.type_unit()).max(LINE * size);
-        [row(NAME_ROW, self.title()), row(ROW, self.caption()), row(TALL_ROW, self.caption())]
+        let row = |height: f64, size: f64| height.max(LINE * size);
+        let name = row(NAME_ROW * self.name_unit(), self.title());
+        let [second, events] = [ROW, TALL_ROW].map(|step| row(step * self.type_unit(), self.caption()));
+        [name, second, events]
     }
 
     /// The heights of the rows of a count and of the words below it (px).
@@ -461,7 +473,7 @@ impl Scale {
 
     /// Size of names, clock and count (px).
     pub(super) fn title(self) -> f64 {
-        (steps::NAME * self.type_unit()).max(self.least)
+        (steps::NAME * self.name_unit()).max(self.least)
     }
 
     /// Size of all other type (px).
@@ -593,7 +605,7 @@ mod tests {
                    Caption 678–700, without []; panels without [Events, Numbers]";
         // Type that cannot be read has no room.
         let small = "Title 11–22, Clock 22–32, Row 32–105, Row 107–180, Legend 184–194, \
-                     without [Chart, Caption, Caption]; panels without [Events, Second, Numbers]";
+                     without [Chart, Caption, Caption]; panels without [Events, Second]";
         assert_eq!([([1280, 1080], 2), ([1280, 720], 2), ([300, 200], 2)].map(said), [large, low, small]);
         let crowded = said(([1280, 720], 12));
         assert!(crowded.contains("without [Caption, "), "{crowded}");
@@ -617,7 +629,8 @@ mod tests {
         let look = Style { text_scale: 2.0, ..Style::of(Theme::Light) };
         let view = View { look, ..View::default() };
         let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&view));
-        assert_eq!((large.title(), large.caption()), (2.0 * usual.title(), 2.0 * usual.caption()));
+        // Names grow less than other type from 1.5 times on, and remain larger.
+        assert_eq!((large.title(), large.caption()), (1.25 * large.caption(), 2.0 * usual.caption()));
         assert_eq!((large.line(), large.margin()), (usual.line(), usual.margin()));
         // Each row has room for its type.
         let panel = [0, 0, 640, 720];
