@@ -84,8 +84,11 @@ pub(super) fn length(metres: f64, extent: f64) -> String {
         return "∞".to_owned();
     }
     let (factor, prefix) = metre(extent);
+    /// Shorter ones are round-off (sizes of the body).
+    const ROUND_OFF: f64 = 1e-8;
     let (value, unit) = (metres / factor, format!("{prefix}m"));
     match value.abs() {
+        size if size < 0.05 && metres > ROUND_OFF * extent => format!("< 0.1 {unit}"),
         size if size < 9.95 => with_minus(format!("{value:.1} {unit}")),
         size if size < 99_999.5 => with_minus(format!("{value:.0} {unit}")),
         _ => with_minus(quantity(metres, "m")),
@@ -208,7 +211,10 @@ mod tests {
     fn lengths_have_the_unit_of_their_body() {
         assert_eq!(length(0.0241, 0.3), "24 mm");
         assert_eq!(length(0.0, 0.3), "0.0 mm");
-        assert_eq!(length(-1e-9, 0.3), "0.0 mm");
+        assert_eq!(
+            [-1e-9, 1e-9, 1.87e-5, 6e-5].map(|small| length(small, 0.3)),
+            ["0.0 mm", "0.0 mm", "< 0.1 mm", "0.1 mm"]
+        );
         assert_eq!(length(2.5, 100.0), "2.5 m");
         assert_eq!(length(f64::NAN, 0.3), "∞");
         assert_eq!(length(1e12, 0.3), "1 Tm");

@@ -279,7 +279,9 @@ fn words_stay_where_they_are() {
                 // Numbers of any length keep one end, and words with the number of flat elements the left one; all other texts keep
                 // both.
                 let kept = [0, 1].map(|end| (now.span[end] - before.span[end]).abs() < 1e-3);
-                let is_number = now.text.starts_with(|c: char| c.is_ascii_digit() || c == '−');
+                let is_number = [now, before]
+                    .iter()
+                    .all(|word| word.text.starts_with(|c: char| c.is_ascii_digit() || "−<".contains(c)));
                 let is_flat = [now, before].iter().any(|word| word.text.ends_with(" flat"));
                 let stays = match (is_number, is_flat) {
                     (true, _) => kept.contains(&true),

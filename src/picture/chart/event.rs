@@ -107,8 +107,8 @@ pub(in crate::picture) fn narrowest(plot: &Plot, scene: &Scene) -> Vec<Event> {
 
 /// The words of an event at a time: whole, shorter, and without the time.
 fn wordings(words: String, joint: &str, time: &str) -> [String; 3] {
-    let [whole, short] =
-        [&*words, words.strip_suffix(" turned over").unwrap_or(&words)].map(|words| format!("{words} {joint} {time}"));
+    let short = words.strip_suffix(" turned over").or(words.strip_prefix("settles at ")).unwrap_or(&words);
+    let [whole, short] = [&*words, short].map(|words| format!("{words} {joint} {time}"));
     [whole, short, words]
 }
 
@@ -212,6 +212,7 @@ mod tests {
         let brief = series(0, true, &[[0.0, 0.0], [0.0196, 1.0], [0.0204, 0.0], [3.0, 0.0]]);
         assert_eq!(words(Diagnostic::TurnedOver, &[brief]), ["turned over briefly at 20 ms"]);
         assert_eq!(wordings("first turned over".to_owned(), "at", "20 ms")[1], "first at 20 ms");
+        assert_eq!(wordings("settles at 9".to_owned(), "after", "113 ms")[1], "9 after 113 ms");
         let many: Vec<_> = (0..20).map(|run| Series { run, ..springs.clone() }).collect();
         assert_eq!(words(Diagnostic::TurnedOver, &many), vec!["first turned over at 20 ms"; MOST]);
     }

@@ -3,16 +3,15 @@
 use super::{KeyPlace, Overlay};
 use crate::colour::Colour;
 use crate::look::{Ghost, View};
-use crate::picture::Item;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::ghost;
-use crate::picture::layout::steps::{STRONG, TICK};
+use crate::picture::layout::steps::{SHORT, STRONG, TICK};
 use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::narrow::narrow;
 use crate::picture::page::Pen;
+use crate::picture::{Item, arrows, ghost};
 use crate::sim::Status;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
 /// The opacity of the casing of outlines.
@@ -79,6 +78,10 @@ impl Draft<'_> {
         }
         let pixels = points.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
         let Some(pixels) = pixels else { return };
+        if let Some(ends) = self.way_to_unseen(&pixels) {
+            curves.extend(arrows::with_halo(ends, self.scale.unit, colour, self.composer.palette.background));
+            return;
+        }
         let bars = self.bodies.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
         let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>(), self.around(self.room));
         let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));
@@ -86,5 +89,18 @@ impl Draft<'_> {
         let casing = Item::stroke(path.clone(), Pen::solid(halo), (self.composer.palette.background, HALO_ALPHA));
         let line = Item::stroke(path, Pen { dash, round: false, width }, colour);
         curves.push(Item::inside(self.room, vec![casing, line]));
+    }
+
+    /// The ends of an arrow at the border of the panel towards what lies wholly beyond it; `None` for what is seen.
+    fn way_to_unseen(&self, pixels: &[DVec2]) -> Option<[DVec2; 2]> {
+        let [left, top, width, height] = self.between_words().map(f64::from);
+        let (low, high) = (DVec2::new(left, top), DVec2::new(left + width, top + height));
+        if pixels.is_empty() || pixels.iter().any(|at| at.cmpge(low).all() && at.cmple(high).all()) {
+            return None;
+        }
+        let centre = low.midpoint(high);
+        let way = pixels.iter().sum::<DVec2>() / pixels.len() as f64 - centre;
+        let end = centre + way * ((high - centre) / way.abs()).min_element().min(1.0);
+        way.is_finite().then(|| [end - way.normalize_or_zero() * SHORT * self.scale.line(), end])
     }
 }
