@@ -261,6 +261,7 @@ impl Pictures for Drawing<'_> {
         // Frames that are all kept are not composed.
         let composer = self.composer.get_or_insert_with(|| Composer::new(self.scene, &History::default()));
         summary.frames.azimuth = composer.azimuth();
+        summary.frames.left_out = composer.left_out();
         for run in &mut summary.runs {
             let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
             run.cut = of_run.map(|(_, frame)| *frame).collect();

@@ -1,6 +1,6 @@
 //! Simulates one scene, draws it, and writes the results.
 
-use super::failure::{Failure, Status, note, with_causes};
+use super::failure::{Failure, Status, note, note_no_room, with_causes};
 use super::options::{PrintOptions, RunOptions};
 use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
@@ -78,6 +78,13 @@ pub(super) fn run_all(
         }
         if !options.printing.quiet {
             report::unsolved(&summary).for_each(|message| note(&message));
+            if let Some(size) = summary.frames.size {
+                note_no_room(
+                    summary.scene.file.as_ref().unwrap_or(&summary.scene.title),
+                    size,
+                    &summary.frames.left_out,
+                );
+            }
         }
         if result.is_err() {
             break;

@@ -104,10 +104,10 @@ impl Render {
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
-        for scene in scenes.iter().filter(|_| !self.options.printing.quiet) {
-            note_no_room(&source_of(scene), scene.view.size, &left_out(scene));
-        }
         if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, StillFormat::of(out)?))) {
+            for scene in scenes.iter().filter(|_| !self.options.printing.quiet) {
+                note_no_room(&source_of(scene), scene.view.size, &left_out(scene));
+            }
             return self.still(path, format, &scenes);
         }
         let films = self.films(scenes.len())?;

@@ -93,6 +93,9 @@ pub(crate) struct FrameSummary {
     /// The azimuth of the camera (rad); absent in the plane and without pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub azimuth: Option<f64>,
+    /// The words without room in the pictures, each with the consequence.
+    #[serde(skip)]
+    pub left_out: Vec<String>,
 }
 
 /// The result of a run.

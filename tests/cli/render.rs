@@ -98,7 +98,7 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     let place = Place::new();
     let sized = |size: &str| SMALL.replace("size = [96, 64]", &format!("size = {size}"));
     place.write("print.toml", &sized("{ mm = [90, 60], dpi = 100 }\ntext_scale = { pt = 8 }"));
-    place.run("render print.toml --frames 0").warned("panels do not describe the models");
+    place.run("render print.toml --frames 0").warned("the descriptions of 2 runs are shortened");
     let file = std::io::BufReader::new(std::fs::File::open(place.path("output/print/frame_00000.png")).unwrap());
     let reader = png::Decoder::new(file).read_info().expect("a picture");
     let info = reader.info();
