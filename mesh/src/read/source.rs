@@ -117,12 +117,12 @@ impl<'b> Source<'b> {
         &rest[..length]
     }
 
-    /// The next line that is not empty and not a comment, with the lines that continue it.
-    pub(super) fn next_line(&mut self, comment: u8) -> Option<Self> {
+    /// The next line that is not empty and not a comment, which begins with `#`, with the lines that continue it.
+    pub(super) fn next_line(&mut self) -> Option<Self> {
         while !self.is_done() {
             let start = self.at;
             // Comments are not continued.
-            let is_comment = self.bytes[start] == comment;
+            let is_comment = self.bytes[start] == b'#';
             while self.line().ends_with(b"\\") && self.at < self.end && !is_comment {}
             if !is_comment {
                 return Some(Self { at: start, end: self.at, ..self.clone() });

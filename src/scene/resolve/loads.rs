@@ -196,8 +196,9 @@ impl Reading<'_> {
         let chosen = faces.as_ref().or(nodes.as_ref()).unwrap_or(&all);
         let is_all = matches!(chosen, NodesFile::Named(name) if name == "all");
         let on_faces = key == "faces";
-        let skins: Vec<_> = self.bodies.iter().filter(|_| on_faces).map(outside).collect();
-        let bodies = if on_faces { &skins } else { self.bodies };
+        let have_skins = on_faces && self.bodies.iter().any(|body| body.body.carried().is_some());
+        let skins: Vec<_> = self.bodies.iter().filter(|_| have_skins).map(outside).collect();
+        let bodies = if have_skins { &skins } else { self.bodies };
         let selected = select(body.as_deref(), (!is_all).then_some(chosen), bodies, (self.path, key), report)?;
         let mut of_bodies = Vec::new();
         for (body, points) in self.bodies.iter().zip(selected) {

@@ -95,7 +95,9 @@ impl Draft<'_> {
     fn way_to_unseen(&self, pixels: &[DVec2]) -> Option<[DVec2; 2]> {
         let [left, top, width, height] = self.between_words().map(f64::from);
         let (low, high) = (DVec2::new(left, top), DVec2::new(left + width, top + height));
-        if pixels.is_empty() || pixels.iter().any(|at| at.cmpge(low).all() && at.cmple(high).all()) {
+        let least = pixels.iter().copied().reduce(DVec2::min)?;
+        let most = pixels.iter().copied().reduce(DVec2::max)?;
+        if most.cmpge(low).all() && least.cmple(high).all() {
             return None;
         }
         let centre = low.midpoint(high);
