@@ -7,7 +7,7 @@ mod sets;
 use super::builder::{self, Builder};
 use super::gmsh::Kind;
 use super::source::{DAMAGED, Scalar, Source};
-use super::tags::{Tags, repeated};
+use super::tags::Tags;
 use super::{Cells, Format, Limits, ReadError, content};
 use keyword::Keyword;
 use std::collections::BTreeMap;
@@ -54,15 +54,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
 
 /// The next line that is neither empty nor a comment.
 fn line<'b>(source: &mut Source<'b>) -> Option<Source<'b>> {
-    while !source.is_done() {
-        let start = source.at;
-        let text = source.line();
-        let line = Source::part(source.whole(), start, start + text.len());
-        if !text.starts_with(b"**") {
-            return Some(line);
-        }
-    }
-    None
+    std::iter::from_fn(|| source.next_line(0)).find(|line| !line.rest().starts_with(b"**"))
 }
 
 /// The next line of data, before the next keyword.
@@ -166,8 +158,7 @@ impl Reader<'_, '_> {
                 }
             }
             let tag = tag.ok_or_else(|| line.found(",", line.at, "the number of a node"))?;
-            let index = self.builder.point_at(point.into(), line.at)?;
-            self.tags[NODES].push_point((tag, index), &self.builder.cells.points, (&line, line.at))?;
+            self.tags[NODES].push(tag, self.builder.point_at(point.into(), line.at)?);
         }
         self.add(NODES, keyword.get("NSET"), first..self.builder.points() as u32);
         Ok(())
@@ -195,9 +186,7 @@ impl Reader<'_, '_> {
             }
             last = line;
             if let Some(number) = tag.filter(|_| found.len() == kind.nodes) {
-                if self.tags[ELEMENTS].push(number, self.builder.cells.kinds.len() as u32).is_some() {
-                    return Err(repeated("element", number, last.place(last.at)));
-                }
+                self.tags[ELEMENTS].push(number, self.builder.cells.kinds.len() as u32);
                 self.builder.is_curved |= kind.nodes > kind.corners;
                 self.builder.around(kind.cell, &found[..kind.corners])?;
                 tag = None;

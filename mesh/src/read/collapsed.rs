@@ -1,72 +1,82 @@
-//! Cells that list a corner several times: programs of mechanics write wedges and tetrahedra as hexahedra with corners in common.
+//! Cells that name a corner more than once: wedges, pyramids and tetrahedra that programs write as hexahedra, and what is left of cells
+//! whose points are welded.
 
+use super::kinds;
+use glam::DVec3;
 use localshape_sim::ElementKind;
 
-/// The faces of a kind with corners around each, as places in the order of [`localshape_sim::Solids::Ordered`].
-fn faces(kind: ElementKind) -> &'static [&'static [usize]] {
+/// The faces of a cell of a kind that may be a simpler one, as places in its list, counter-clockwise from outside.
+fn sides(kind: ElementKind) -> &'static [&'static [usize]] {
     match kind {
+        ElementKind::Pyramid => &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],
+        ElementKind::Wedge => &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
         ElementKind::Hexahedron => {
-            &[&[0, 1, 3, 2], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 3, 7, 6], &[0, 2, 6, 4], &[1, 3, 7, 5]]
+            &[&[0, 4, 6, 2], &[1, 3, 7, 5], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 2, 3, 1], &[4, 5, 7, 6]]
         }
-        ElementKind::Wedge => &[&[0, 1, 2], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
-        ElementKind::Pyramid => &[&[0, 1, 2, 3], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],
         _ => &[],
     }
 }
 
-/// The wedge, pyramid or tetrahedron that a cell with repeated corners is, with its corners; `None` if it is none.
-pub(super) fn simpler(kind: ElementKind, cell: &[u32]) -> Option<(ElementKind, Vec<u32>)> {
-    let around = |places: &&[usize]| {
-        let mut corners: Vec<u32> = places.iter().map(|&place| cell[place]).collect();
-        corners.dedup();
-        if corners.len() > 1 && corners.first() == corners.last() {
-            corners.pop();
+/// What is left of the faces of a cell: triangles and quadrilaterals, each with different corners.
+fn faces(kind: ElementKind, cell: &[u32]) -> Vec<Vec<u32>> {
+    let mut faces = Vec::new();
+    for side in sides(kind) {
+        let mut face: Vec<u32> = side.iter().map(|&place| cell[place]).collect();
+        face.dedup();
+        if face.len() > 1 && face.first() == face.last() {
+            face.pop();
         }
-        corners
-    };
-    let left: Vec<Vec<u32>> = faces(kind).iter().map(around).filter(|corners| corners.len() > 2).collect();
-    let mut distinct = cell.to_vec();
-    distinct.sort_unstable();
-    distinct.dedup();
-    let (triangles, quadrilaterals): (Vec<_>, Vec<_>) = left.into_iter().partition(|corners| corners.len() == 3);
-    match (distinct.len(), &triangles[..], &quadrilaterals[..]) {
-        (4, [_, _, _, _], []) => Some((ElementKind::Tetrahedron, distinct)),
-        (5, [_, _, _, _], [base]) => {
-            let tip = distinct.into_iter().find(|corner| !base.contains(corner))?;
-            Some((ElementKind::Pyramid, base.iter().copied().chain([tip]).collect()))
+        // A face that goes back where it came from has no area.
+        let is_there_and_back = face.len() == 4 && (face[0] == face[2] || face[1] == face[3]);
+        if face.len() > 2 && !is_there_and_back {
+            faces.push(face);
         }
-        (6, [lower, _], [_, _, _]) => {
-            // Each corner of a triangle has an edge to one of the other.
-            let across = |&corner: &u32| {
-                let edges = quadrilaterals.iter().flat_map(|of| (0..4).map(|at| [of[at], of[(at + 1) % 4]]));
-                let mut ends = edges.filter(|edge| edge.contains(&corner)).flatten();
-                ends.find(|end| !lower.contains(end))
-            };
-            let upper = lower.iter().map(across).collect::<Option<Vec<_>>>()?;
-            Some((ElementKind::Wedge, lower.iter().copied().chain(upper).collect()))
-        }
-        _ => None,
+    }
+    faces
+}
+
+/// The cells that a cell of a kind is, if these corners are all that it has: one of a simpler kind or, if none has its faces,
+/// tetrahedra. Empty if it has no volume.
+pub(super) fn simpler(
+    kind: ElementKind,
+    cell: &[u32],
+    different: &[u32],
+    points: &[DVec3],
+) -> Vec<(ElementKind, Vec<u32>)> {
+    if kind == ElementKind::Other {
+        let kind = if different.len() == 4 { ElementKind::Tetrahedron } else { kind };
+        return vec![(kind, different.to_vec())];
+    }
+    let faces = faces(kind, cell);
+    // Tetrahedra are also written with a quadrilateral that is bent. Two quadrilaterals on each other are none.
+    if different.len() == 4 && faces.iter().any(|face| face.len() == 3) {
+        return vec![(ElementKind::Tetrahedron, different.to_vec())];
+    }
+    match kinds::known(&faces, different) {
+        Some((kind, corners)) => kind.element().map(|kind| (kind, corners)).into_iter().collect(),
+        None => tetrahedra(&faces, different, points),
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_with_corners_in_common_are_simpler_ones() {
-        let of = |kind, cell: &[u32]| simpler(kind, cell);
-        let hexahedron = |cell: [u32; 8]| of(ElementKind::Hexahedron, &cell);
-        // A side that is an edge: corners 2 and 3, 6 and 7 in common.
-        assert_eq!(hexahedron([0, 1, 2, 2, 4, 5, 6, 6]), Some((ElementKind::Wedge, vec![0, 1, 2, 4, 5, 6])));
-        assert_eq!(hexahedron([0, 1, 2, 3, 9, 9, 9, 9]), Some((ElementKind::Pyramid, vec![0, 1, 3, 2, 9])));
-        assert_eq!(hexahedron([0, 1, 2, 2, 9, 9, 9, 9]), Some((ElementKind::Tetrahedron, vec![0, 1, 2, 9])));
-        assert_eq!(of(ElementKind::Wedge, &[0, 1, 2, 3, 3, 3]), Some((ElementKind::Tetrahedron, vec![0, 1, 2, 3])));
-        let pyramid = of(ElementKind::Wedge, &[0, 1, 2, 0, 4, 5]);
-        assert_eq!(pyramid, Some((ElementKind::Pyramid, vec![1, 2, 5, 4, 0])));
-        // Opposite corners in common, two points and a cell without volume.
-        assert_eq!(hexahedron([0, 1, 2, 0, 4, 5, 6, 7]), None);
-        assert_eq!(hexahedron([0, 1, 0, 1, 0, 1, 0, 1]), None);
-        assert_eq!(of(ElementKind::Tetrahedron, &[0, 1, 2, 2]), None);
-    }
+/// The tetrahedra between a corner and the faces that do not have it, by the first corner from which all are on the inner side.
+fn tetrahedra(faces: &[Vec<u32>], different: &[u32], points: &[DVec3]) -> Vec<(ElementKind, Vec<u32>)> {
+    let at = |point: u32| points[point as usize];
+    let from = |&apex: &u32| {
+        let mut all = Vec::new();
+        for face in faces.iter().filter(|face| !face.contains(&apex)) {
+            // Quadrilaterals are divided at their lowest corner, as those of the next cell are.
+            let first = (0..face.len()).min_by_key(|&place| face[place]).unwrap_or(0);
+            let corner = |place: usize| face[(first + place) % face.len()];
+            all.extend((2..face.len()).map(|place| [corner(0), corner(place - 1), corner(place), apex]));
+        }
+        let six = |[a, b, c, d]: &[u32; 4]| (at(*b) - at(*a)).cross(at(*c) - at(*a)).dot(at(*d) - at(*a));
+        let volumes: Vec<f64> = all.iter().map(six).collect();
+        let size = volumes.iter().map(|volume| volume.abs()).sum::<f64>();
+        let is_thick = |volume: &f64| volume.abs() > super::order::FLAT * size;
+        let is_inner = |sign: f64| volumes.iter().filter(|volume| is_thick(volume)).all(|volume| volume * sign > 0.0);
+        let thick = all.iter().zip(&volumes).filter(|(_, volume)| is_thick(volume));
+        let cells = thick.map(|(cell, _)| (ElementKind::Tetrahedron, cell.to_vec())).collect();
+        (is_inner(1.0) || is_inner(-1.0)).then_some(cells)
+    };
+    different.iter().find_map(from).unwrap_or_default()
 }

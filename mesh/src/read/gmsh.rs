@@ -190,8 +190,7 @@ impl Reader<'_, '_> {
             for &tag in &tags {
                 let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
                 self.source.skip(parameters, Scalar::F64, "a parameter")?;
-                let index = self.builder.point_at(point, at)?;
-                self.tags.push_point((tag, index), &self.builder.cells.points, (&self.source, at))?;
+                self.tags.push(tag, self.builder.point_at(point, at)?);
             }
         }
         Ok(())

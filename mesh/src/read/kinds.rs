@@ -66,6 +66,15 @@ pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Build
     points.extend(listed);
     points.sort_unstable();
     points.dedup();
+    match known(faces, &points) {
+        Some((kind, corners)) => builder.around(kind, &corners),
+        None => builder.cell(CellKind::Polyhedron, &points),
+    }
+}
+
+/// The kind of a cell with these faces and these points, in ascending order, and its corners as files list them. `None` if it is no
+/// tetrahedron, pyramid, wedge or hexahedron.
+pub(super) fn known(faces: &[Vec<u32>], points: &[u32]) -> Option<(CellKind, Vec<u32>)> {
     let triangles = faces.iter().filter(|face| face.len() == 3).count();
     let quadrilaterals = faces.iter().filter(|face| face.len() == 4).count();
     let (kind, base) = match (points.len(), triangles, quadrilaterals, faces.len()) {
@@ -73,7 +82,7 @@ pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Build
         (5, 4, 1, 5) => (CellKind::Pyramid, 4),
         (6, 2, 3, 5) => (CellKind::Wedge, 3),
         (8, 0, 6, 6) => (CellKind::Hexahedron, 4),
-        _ => return builder.cell(CellKind::Polyhedron, &points),
+        _ => return None,
     };
     // Faces are listed counter-clockwise from outside, and the base of a cell from inside.
     let base = faces.iter().find(|face| face.len() == base);
@@ -93,5 +102,5 @@ pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Build
     let mut sorted = corners.clone();
     sorted.sort_unstable();
     // Faces may not fit together.
-    if sorted == points { builder.around(kind, &corners) } else { builder.cell(CellKind::Polyhedron, &points) }
+    (sorted == points).then_some((kind, corners))
 }

@@ -6,6 +6,7 @@ use super::used::Used;
 use super::{CellKind, Cells, Format, Mesh, ReadError, Surface, Volume};
 use glam::DVec3;
 use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
+use std::collections::BTreeSet;
 
 impl Cells {
     /// The mesh of a file of a format. In formats of cells it is a volume of the cells with a volume; else, if all faces lie in a plane
@@ -118,8 +119,9 @@ impl Cells {
     }
 
     fn solids(self) -> Result<Volume, ReadError> {
-        let hulls =
-            |kind: CellKind, corners: &[u32]| kind == CellKind::Polyhedron && matches!(corners.len(), 5 | 6 | 8);
+        let hulls = |kind: CellKind, corners: &[u32]| {
+            kind == CellKind::Polyhedron && matches!(BTreeSet::from_iter(corners).len(), 5 | 6 | 8)
+        };
         // Elements with so many nodes are told from tetrahedra, pyramids, wedges and hexahedra in no other way.
         let convex = self.chosen(CellKind::is_solid).any(|(_, kind, corners)| hulls(kind, corners));
         let solids = if convex { Solids::Convex } else { Solids::Ordered };

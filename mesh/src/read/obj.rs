@@ -11,7 +11,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut corners = Vec::new();
     // The first keyword that is not one of the format.
     let mut unknown = None;
-    while let Some(mut line) = source.next_line() {
+    while let Some(mut line) = source.next_line(b'#') {
         match line.word() {
             b"v" => {
                 let start = line.at;

@@ -6,7 +6,7 @@ use super::{Cells, Format, Limits, ReadError, content};
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
-    let mut header = source.next_line().ok_or_else(|| source.ends("`OFF`"))?;
+    let mut header = source.next_line(b'#').ok_or_else(|| source.ends("`OFF`"))?;
     let mut word = header.word();
     // The number of points may follow without a space, as in the files of ModelNet: `OFF490 518 0`.
     if word.starts_with(b"OFF") {
@@ -27,20 +27,20 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     // The numbers are in the same line, or in the next.
     let mut numbers = match header.is_done() || header.peek().starts_with(b"#") {
         false => header,
-        true => source.next_line().ok_or_else(|| source.ends("the number of points"))?,
+        true => source.next_line(b'#').ok_or_else(|| source.ends("the number of points"))?,
     };
     let points = numbers.count(Scalar::I64, "the number of points")?;
     let faces = numbers.count(Scalar::I64, "the number of faces")?;
     let mut builder = Builder::new(limits);
     builder.expect(points, faces)?;
     for at in 0..points {
-        let mut line = source.next_line().ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
+        let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
         let start = line.at;
         builder.point_at(line.point(Scalar::F64)?, start)?;
     }
     let mut corners = Vec::new();
     for at in 0..faces {
-        let mut line = source.next_line().ok_or_else(|| source.ends(&format!("face {} of {faces}", at + 1)))?;
+        let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("face {} of {faces}", at + 1)))?;
         corners.clear();
         for _ in 0..line.count(Scalar::I64, "the number of corners of a face")? {
             let start = line.at;

@@ -1,14 +1,13 @@
 //! Cells of files in the order of elements.
 
-use super::ReadError;
-use super::collapsed::simpler;
+use super::{ReadError, collapsed};
 use glam::DVec3;
 use localshape_sim::geometry::volume_by_faces;
 use localshape_sim::{Dimension, ElementKind, IndexLists};
 use std::collections::HashSet;
 
 /// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
-const FLAT: f64 = 1e-12;
+pub(super) const FLAT: f64 = 1e-12;
 
 /// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
 /// [`localshape_sim::Solids::Ordered`]. It is its own inverse.
@@ -21,7 +20,7 @@ pub(super) struct Parts {
     turned: usize,
     /// Cells without area or volume: how many, and the first in the file.
     flat: (usize, usize),
-    /// Cells with repeated corners that are simpler ones.
+    /// How many cells with a corner that is listed more than once were read as simpler ones.
     simpler: usize,
     known: HashSet<[u32; 8]>,
 }
@@ -39,11 +38,12 @@ impl Parts {
         }
     }
 
-    /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group.
+    /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group. One
+    /// that lists a corner more than once becomes a simpler one.
     pub(super) fn add(&mut self, at: usize, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) {
         let mut sorted = cell.to_vec();
         sorted.sort_unstable();
-        let least = if self.dimension == Dimension::Plane { 3 } else { 4 };
+        sorted.dedup();
         if sorted.len() <= 8 {
             let mut key = [u32::MAX; 8];
             key[..sorted.len()].copy_from_slice(&sorted);
@@ -51,20 +51,26 @@ impl Parts {
                 return;
             }
         }
-        let repeats = sorted.windows(2).any(|pair| pair[0] == pair[1]);
-        if let Some((kind, mut cell)) = Some(kind).filter(|_| repeats).and_then(|kind| simpler(kind, cell)) {
-            self.simpler += 1;
-            return self.add(at, kind, &mut cell, points);
+        let before = self.cells.len();
+        if sorted.len() == cell.len() {
+            self.push(kind, cell, points);
+        } else if self.dimension == Dimension::Space {
+            for (kind, mut cell) in collapsed::simpler(kind, cell, &sorted, points) {
+                self.push(kind, &mut cell, points);
+            }
+            self.simpler += usize::from(self.cells.len() > before);
         }
-        let mut is_flat = cell.len() < least || repeats;
-        if !is_flat && kind != ElementKind::Other {
-            is_flat = !self.order(kind, cell, points);
-        }
-        if is_flat {
+        if self.cells.len() == before {
             self.flat = (self.flat.0 + 1, if self.flat.0 == 0 { at } else { self.flat.1 });
-            return;
         }
-        self.cells.push(cell);
+    }
+
+    /// Adds a cell with different corners, unless it has no area or volume.
+    fn push(&mut self, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) {
+        let least = if self.dimension == Dimension::Plane { 3 } else { 4 };
+        if cell.len() >= least && (kind == ElementKind::Other || self.order(kind, cell, points)) {
+            self.cells.push(cell);
+        }
     }
 
     /// Puts the corners of a cell into the expected order. Returns false if it has no area or volume.
@@ -102,7 +108,7 @@ impl Parts {
         true
     }
 
-    /// The elements, how many were turned over, and what is told of those that are simpler than listed, or left out.
+    /// The elements, how many were turned over, and what is told of those that became simpler ones and of those that are left out.
     ///
     /// # Errors
     /// If all are left out.
@@ -111,14 +117,15 @@ impl Parts {
         cells: &IndexLists,
         points: &[DVec3],
     ) -> Result<(IndexLists, usize, Vec<String>), ReadError> {
-        let ((flat, first), simpler) = (self.flat, self.simpler);
         let mut notes = Vec::new();
-        if simpler > 0 {
-            let [cells, are] = if simpler == 1 { ["a cell", "is"] } else { ["cells", "are"] };
-            notes.push(format!(
-                "has {cells} with repeated corners, which {are} read as wedges, pyramids or tetrahedra: {simpler}"
-            ));
+        match self.simpler {
+            0 => {}
+            1 => notes.push("has a cell that lists a corner more than once, which is read as a simpler one".to_owned()),
+            count => notes.push(format!(
+                "has {count} cells that list a corner more than once, which are read as simpler ones: wedges, pyramids, tetrahedra"
+            )),
         }
+        let (flat, first) = self.flat;
         if flat == 0 {
             return Ok((self.cells, self.turned, notes));
         }

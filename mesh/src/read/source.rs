@@ -46,11 +46,6 @@ impl<'b> Source<'b> {
         Self { bytes, at: start, end, coding: Coding::Text }
     }
 
-    /// The whole file.
-    pub(super) fn whole(&self) -> &'b [u8] {
-        self.bytes
-    }
-
     pub(super) fn rest(&self) -> &'b [u8] {
         &self.bytes[self.at..self.end]
     }
@@ -117,14 +112,12 @@ impl<'b> Source<'b> {
         &rest[..length]
     }
 
-    /// The next line that is not empty and not a comment, which begins with `#`, with the lines that continue it.
-    pub(super) fn next_line(&mut self) -> Option<Self> {
+    /// The next line that is not empty and not a comment, with the lines that continue it.
+    pub(super) fn next_line(&mut self, comment: u8) -> Option<Self> {
         while !self.is_done() {
             let start = self.at;
-            // Comments are not continued.
-            let is_comment = self.bytes[start] == b'#';
-            while self.line().ends_with(b"\\") && self.at < self.end && !is_comment {}
-            if !is_comment {
+            while self.line().ends_with(b"\\") && self.at < self.end {}
+            if self.bytes[start] != comment {
                 return Some(Self { at: start, end: self.at, ..self.clone() });
             }
         }

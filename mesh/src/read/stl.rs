@@ -97,10 +97,6 @@ fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder<'_>) -> Res
     if (bytes.len() - HEAD) as u64 > TRIANGLE as u64 * count + TRIANGLE as u64 && count == 0 {
         return Err(ReadError::new("promises no triangles in its binary header, but has data after it", DAMAGED));
     }
-    if held as u64 > count && count > 0 {
-        let message = format!("has the bytes of {held} triangles after its header, which promises {count}");
-        return Err(ReadError::new(message, "write it again, or each of several files that were joined on its own"));
-    }
     welder.builder.expect(0, count)?;
     source.at = HEAD;
     // The file is known to have the triangles. A closed surface has half as many points.

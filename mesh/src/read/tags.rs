@@ -2,7 +2,6 @@
 
 use super::ReadError;
 use super::source::{DAMAGED, Source};
-use glam::DVec3;
 use std::collections::HashMap;
 
 /// The index of each number of a node or an element. Most files count them one after the other.
@@ -16,11 +15,7 @@ pub(super) struct Tags {
 }
 
 impl Tags {
-    /// Gives an index a number. An earlier index with this number keeps it, and is returned.
-    pub(super) fn push(&mut self, tag: i64, index: u32) -> Option<u32> {
-        if let Some(before) = self.get(tag) {
-            return Some(before);
-        }
+    pub(super) fn push(&mut self, tag: i64, index: u32) {
         if self.count == 0 {
             (self.first, self.from) = (tag, index);
         }
@@ -32,24 +27,6 @@ impl Tags {
             other.insert(tag, index);
         }
         self.count += 1;
-        None
-    }
-
-    /// Gives a point, the last one of a mesh, a number that was found at a place.
-    ///
-    /// # Errors
-    /// Another point has it.
-    pub(super) fn push_point(
-        &mut self,
-        (tag, index): (i64, u32),
-        points: &[DVec3],
-        (source, at): (&Source<'_>, usize),
-    ) -> Result<(), ReadError> {
-        let place = |index: u32| points.get(index as usize);
-        match self.push(tag, index).filter(|&before| place(before) != place(index)) {
-            Some(_) => Err(repeated("node", tag, source.place(at))),
-            None => Ok(()),
-        }
     }
 
     pub(super) fn get(&self, tag: i64) -> Option<u32> {
@@ -68,12 +45,4 @@ impl Tags {
             ReadError::new(format!("names {what} {tag} {}, which it does not have", source.place(at)), DAMAGED)
         })
     }
-}
-
-/// A number that two nodes or elements have.
-pub(super) fn repeated(what: &str, tag: i64, place: String) -> ReadError {
-    ReadError::new(
-        format!("has {what} {tag} again {place}, with other contents"),
-        format!("give each {what} a number of its own"),
-    )
 }

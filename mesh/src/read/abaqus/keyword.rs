@@ -18,13 +18,7 @@ impl<'b> Keyword<'b> {
     pub(super) fn new(line: Source<'b>, source: &mut Source<'b>) -> Self {
         let words = |line: &Source<'_>| String::from_utf8_lossy(line.rest().trim_ascii()).into_owned();
         let mut text = words(&line);
-        while text.ends_with(',') {
-            // A line of numbers is data: some programs write a comma after the last parameter.
-            let mut next = source.clone();
-            let is_name =
-                |line: &Source<'_>| line.rest().trim_ascii_start().first().is_some_and(u8::is_ascii_alphabetic);
-            let Some(more) = data(&mut next).filter(is_name) else { break };
-            *source = next;
+        while let Some(more) = text.ends_with(',').then(|| data(source)).flatten() {
             text += &words(&more);
         }
         let mut parts = text[1..].split(',');

@@ -13,8 +13,7 @@ impl Reader<'_, '_> {
         for _ in 0..count {
             let tag = self.int("the number of a node")?;
             let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
-            let index = self.builder.point_at(point, at)?;
-            self.tags.push_point((tag, index), &self.builder.cells.points, (&self.source, at))?;
+            self.tags.push(tag, self.builder.point_at(point, at)?);
         }
         self.source.coding = Coding::Text;
         Ok(())

@@ -74,19 +74,3 @@ fn negative_groups_of_gmsh_keep_their_names() {
     assert!(old.contains("2 2 4 2 1 1 1 1 5 7\n3 2 4 -2 1 1 1 1 7 3"), "one triangle of either sign");
     assert_eq!(groups(&volume(old, Format::Gmsh))[1], ("ü", 4));
 }
-
-#[test]
-fn nodes_that_are_given_twice_are_refused() {
-    let nodes = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
-    let file = |count: u32, more: &str| {
-        format!(
-            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{count}\n{nodes}{more}$EndNodes\n$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n"
-        )
-    };
-    let told = refusal(file(5, "3 0 9 0\n"), Format::Gmsh);
-    assert!(told.starts_with("has node 3 again in line 10, with other contents"), "{told}");
-    for (count, more) in [(4, ""), (5, "3 0 1 0\n")] {
-        let found = whole(&volume(file(count, more), Format::Gmsh));
-        assert!((found - 1.0 / 6.0).abs() < 1e-12, "{found}");
-    }
-}

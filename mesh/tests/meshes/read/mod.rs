@@ -2,6 +2,7 @@
 
 mod abaqus;
 mod bounds;
+mod collapsed;
 mod cube;
 mod displacements;
 mod gltf;

@@ -165,20 +165,3 @@ fn off_has_its_numbers_in_any_line_and_more_than_coordinates() {
     }
     assert!(refusal(b"OFFICE 1 2\n", Format::Off).starts_with("has `ICE` in line 1; expected the number of points"));
 }
-
-#[test]
-fn comments_that_end_in_a_backslash_are_not_continued() {
-    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n# C:\\\nf 1 3 2\nf 1 2 4\nf 2 3 \\\n4\nf 3 1 4\n";
-    assert_eq!(surface(text, Format::Obj).triangles.len(), 4);
-}
-
-/// Two files in one: the header tells of the first.
-#[test]
-fn binary_stl_with_more_than_it_promises_is_refused() {
-    let triangle = [0_u8; 50];
-    let mut bytes = vec![0; 80];
-    bytes.extend(1_u32.to_le_bytes());
-    bytes.extend([triangle; 2].concat());
-    let told = refusal(&bytes, Format::Stl);
-    assert!(told.starts_with("has the bytes of 2 triangles after its header, which promises 1"), "{told}");
-}
