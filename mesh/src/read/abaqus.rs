@@ -36,7 +36,8 @@ const NODES: usize = 0;
 const ELEMENTS: usize = 1;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
-    let (source, builder) = (Source::text(bytes), Builder::new(limits));
+    let (mut source, builder) = (Source::text(bytes), Builder::new(limits));
+    source.continues = false;
     let (tags, sets, skipped, spent, parts, left_out, is_assembly) = Default::default();
     let mut reader = Reader { source, builder, limits, tags, sets, skipped, spent, parts, left_out, is_assembly };
     let mut is_begun = false;

@@ -29,6 +29,8 @@ pub(super) struct Source<'b> {
     /// The end of what is read: of the file, or of a line.
     end: usize,
     pub(super) coding: Coding,
+    /// Whether a line that ends in a backslash goes on in the next.
+    pub(super) continues: bool,
 }
 
 fn is_space(byte: u8) -> bool {
@@ -39,11 +41,11 @@ impl<'b> Source<'b> {
     /// A text, without its byte order mark.
     pub(super) fn text(bytes: &'b [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Self { bytes, at, end: bytes.len(), coding: Coding::Text }
+        Self { bytes, at, end: bytes.len(), coding: Coding::Text, continues: true }
     }
 
     pub(super) fn part(bytes: &'b [u8], start: usize, end: usize) -> Self {
-        Self { bytes, at: start, end, coding: Coding::Text }
+        Self { bytes, at: start, end, coding: Coding::Text, continues: true }
     }
 
     pub(super) fn rest(&self) -> &'b [u8] {
@@ -71,7 +73,7 @@ impl<'b> Source<'b> {
             match self.bytes[self.at] {
                 byte if is_space(byte) => self.at += 1,
                 // A line that is continued in the next.
-                b'\\' if matches!(self.rest(), [b'\\', b'\n' | b'\r', ..]) => self.at += 1,
+                b'\\' if self.continues && matches!(self.rest(), [b'\\', b'\n' | b'\r', ..]) => self.at += 1,
                 _ => break,
             }
         }
@@ -112,11 +114,19 @@ impl<'b> Source<'b> {
         &rest[..length]
     }
 
-    /// The next line that is not empty and not a comment, with the lines that continue it.
+    /// The next line that is not empty and not a comment, with the lines that continue it. Nothing continues a comment: paths of folders
+    /// end in backslashes, too.
     pub(super) fn next_line(&mut self, comment: u8) -> Option<Self> {
         while !self.is_done() {
             let start = self.at;
-            while self.line().ends_with(b"\\") && self.at < self.end {}
+            let begins = |pair: &[u8]| is_space(pair[0]) && pair[1] == comment;
+            let is_comment = |line: &[u8]| line.first() == Some(&comment) || line.windows(2).any(begins);
+            loop {
+                let line = self.line();
+                if !(self.continues && line.ends_with(b"\\")) || is_comment(line) || self.at == self.end {
+                    break;
+                }
+            }
             if self.bytes[start] != comment {
                 return Some(Self { at: start, end: self.at, ..self.clone() });
             }
@@ -126,11 +136,11 @@ impl<'b> Source<'b> {
 
     /// The fields of a line between commas that are not blank, with their numbers.
     pub(super) fn fields(&self) -> impl Iterator<Item = (usize, Self)> {
-        let (bytes, mut next) = (self.bytes, self.at);
+        let (bytes, continues, mut next) = (self.bytes, self.continues, self.at);
         let parts = self.rest().split(|&byte| byte == b',').map(move |part| {
             let start = next;
             next += part.len() + 1;
-            Self::part(bytes, start, start + part.len())
+            Self { continues, ..Self::part(bytes, start, start + part.len()) }
         });
         parts.enumerate().filter(|(_, part)| !part.rest().trim_ascii().is_empty())
     }

@@ -182,3 +182,26 @@ fn refusals_of_abaqus_files_say_where_and_what_to_do() {
     }
     assert_eq!(volume(format!("{nodes}{cell}"), Format::Abaqus).cells.len(), 1);
 }
+
+/// A box of 2 × 1 × 3 as six tetrahedra.
+const NODES: &str =
+    "*NODE\n1, 0, 0, 0\n2, 2, 0, 0\n3, 2, 1, 0\n4, 0, 1, 0\n5, 0, 0, 3\n6, 2, 0, 3\n7, 2, 1, 3\n8, 0, 1, 3\n";
+const CELLS: [&str; 6] =
+    ["1, 1, 2, 3, 7", "2, 1, 3, 4, 7", "3, 1, 4, 8, 7", "4, 1, 8, 5, 7", "5, 1, 5, 6, 7", "6, 1, 6, 2, 7"];
+
+/// Abaqus knows no lines that a backslash continues, and paths of folders end in one.
+#[test]
+fn lines_of_abaqus_that_end_in_a_backslash_are_whole() {
+    let [one, other] = [&CELLS[..3], &CELLS[3..]].map(|cells| cells.join("\n"));
+    for comment in ["** job folder: C:\\temp\\", "*HEADING\nC:\\temp\\", "*HEADING\n\\"] {
+        let text = format!(
+            "{NODES}*ELEMENT, TYPE=C3D4, ELSET=A\n{one}\n{comment}\n*ELEMENT, TYPE=C3D4, ELSET=B\n{other}\n{comment}\n\
+             *NSET, NSET=C\n1, 2, 8\n"
+        );
+        let found = volume(text, Format::Abaqus);
+        assert_eq!((found.cells.len(), groups(&found)), (6, vec![("A", 6), ("B", 6), ("C", 3)]), "{comment}");
+        assert!((whole(&found) - 6.0).abs() < 1e-12, "{comment}");
+    }
+    let found = refusal(format!("{NODES}*NSET, NSET=C\n1, \\\n2\n"), Format::Abaqus);
+    assert!(found.starts_with("names the set `\\\\` in line 11, which it does not have before"), "{found}");
+}

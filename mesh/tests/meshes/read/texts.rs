@@ -165,3 +165,21 @@ fn off_has_its_numbers_in_any_line_and_more_than_coordinates() {
     }
     assert!(refusal(b"OFFICE 1 2\n", Format::Off).starts_with("has `ICE` in line 1; expected the number of points"));
 }
+
+/// Paths of folders end in a backslash.
+#[test]
+fn comments_are_not_continued() {
+    let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    for comment in ["# folder C:\\models\\", "  # C:\\", "#\\"] {
+        for end in ["\n", "\r\n", "\r"] {
+            let text = format!("{points}{comment}\ng top\nf 1 2 3 \\\n4\n{comment}\nf 1 2 4\n").replace('\n', end);
+            let found = surface(text, Format::Obj);
+            assert_eq!((found.triangles.len(), &*found.groups[0].name), (3, "top"), "{comment}");
+        }
+    }
+    // Behind a point and behind a name.
+    let found = surface(format!("{}g top # b\\\nf 1 2 3\n", points.replace("1\n", "1 # a\\\n")), Format::Obj);
+    assert_eq!((found.points.len(), found.triangles.len(), &*found.groups[0].name), (3, 1, "top"));
+    let found = surface("OFF # a\\\n# b\\\n3 1 0\n0 0 0\n1 0 0 # c\\\n0 1 0\n# d\\\n3 0 1 2\n", Format::Off);
+    assert_eq!((found.points.len(), found.triangles.len()), (3, 1));
+}
