@@ -14,12 +14,15 @@ pub(super) struct Keyword<'b> {
 }
 
 impl<'b> Keyword<'b> {
-    /// The keyword in a line and in those that continue it.
+    /// The keyword in a line and in those that continue it. Programs also write a comma behind the last parameter.
     pub(super) fn new(line: Source<'b>, source: &mut Source<'b>) -> Self {
         let words = |line: &Source<'_>| String::from_utf8_lossy(line.rest().trim_ascii()).into_owned();
         let mut text = words(&line);
-        while let Some(more) = text.ends_with(',').then(|| data(source)).flatten() {
-            text += &words(&more);
+        while text.ends_with(',') {
+            let mut next = source.clone();
+            let Some(more) = data(&mut next).map(|more| words(&more)).filter(|more| is_parameter(more)) else { break };
+            text += &more;
+            *source = next;
         }
         let mut parts = text[1..].split(',');
         let name = capitals(parts.next().unwrap_or_default());
@@ -43,4 +46,10 @@ impl<'b> Keyword<'b> {
     pub(super) fn wrong(&self, expected: &str) -> ReadError {
         self.line.found(&format!("*{}", self.name), self.line.at, expected)
     }
+}
+
+/// Whether a line begins with a parameter, not with data: with a name and a value, or with a name that has none.
+fn is_parameter(line: &str) -> bool {
+    let first = line.split(',').next().unwrap_or_default();
+    first.contains('=') || ["GENERATE", "INTERNAL", "UNSORTED"].contains(&&*capitals(first))
 }

@@ -205,3 +205,24 @@ fn lines_of_abaqus_that_end_in_a_backslash_are_whole() {
     let found = refusal(format!("{NODES}*NSET, NSET=C\n1, \\\n2\n"), Format::Abaqus);
     assert!(found.starts_with("names the set `\\\\` in line 11, which it does not have before"), "{found}");
 }
+
+#[test]
+fn a_comma_behind_the_last_parameter_of_abaqus_takes_no_data() {
+    let cells = CELLS.join("\n");
+    let text = format!(
+        "*NODE,\n{}*ELEMENT, TYPE=C3D4, ELSET=all,\n{cells}\n*NSET, NSET=fix,\n1, 2, 3\n4, 5\n*NSET, NSET=more,\n\
+         ** of another\nfix\n6,\n*ELSET, ELSET=some,\n1, 2\n",
+        &NODES[6..]
+    );
+    let found = volume(text, Format::Abaqus);
+    assert_eq!(found.cells.len(), 6);
+    assert!((whole(&found) - 6.0).abs() < 1e-12);
+    assert_eq!(groups(&found), [("all", 8), ("fix", 5), ("more", 6), ("some", 5)]);
+    // Parameters in further lines.
+    let text = format!(
+        "{NODES}*ELEMENT,\nTYPE=C3D4,\n  ELSET=all\n{cells}\n*NSET, NSET=rows,\nGENERATE\n1, 7, 2\n*NSET,\n** a\nNSET=few, generate,\n\
+         1, 3,\n"
+    );
+    let found = volume(text, Format::Abaqus);
+    assert_eq!((found.cells.len(), groups(&found)), (6, vec![("all", 8), ("few", 3), ("rows", 4)]));
+}
