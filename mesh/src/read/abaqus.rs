@@ -6,6 +6,7 @@ mod sets;
 
 use super::builder::{self, Builder};
 use super::gmsh::Kind;
+use super::meshing::BESIDE;
 use super::source::{DAMAGED, Scalar, Source};
 use super::tags::Tags;
 use super::{Cells, Format, Limits, ReadError, content};
@@ -220,8 +221,7 @@ impl Reader<'_, '_> {
         }
         let thin = self.builder.cells.kinds.iter().filter(|kind| !kind.is_solid()).count();
         if (1..self.builder.cells.kinds.len()).contains(&thin) {
-            let note = format!("has lines and faces beside its solids, which are left out: {thin}");
-            self.builder.cells.notes.push(note);
+            self.builder.cells.notes.push(format!("{BESIDE}: {thin}"));
         }
         let [nodes, elements] = self.sets;
         for (key, (name, members)) in elements {

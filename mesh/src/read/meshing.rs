@@ -2,11 +2,15 @@
 
 use super::order::Parts;
 use super::polygon::Triangulation;
-use super::used::Used;
+use super::source::quoted;
+use super::used::{NONE, Used};
 use super::{CellKind, Cells, Format, Mesh, ReadError, Surface, Volume};
 use glam::DVec3;
 use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
 use std::collections::BTreeSet;
+
+/// How a file is told to have cells of fewer dimensions that belong to no element.
+pub(super) const BESIDE: &str = "has lines and faces beside its solids, which are left out";
 
 impl Cells {
     /// The mesh of a file of a format. In formats of cells it is a volume of the cells with a volume; else, if all faces lie in a plane
@@ -101,10 +105,37 @@ impl Cells {
         Ok(triangles)
     }
 
+    /// Tells of lines and faces with points that no element has, and of the groups that are lost with them. Those at the surface of
+    /// the elements name its parts.
+    fn tell_beside(&mut self, dimension: Dimension, lists: &IndexLists) {
+        /// So many groups are named.
+        const MOST: usize = 8;
+        let used = Used::new(self.points.len(), lists.indices());
+        let is_lost = |point: &u32| used.new[*point as usize] == NONE;
+        let (what, is_thin): (_, fn(CellKind) -> bool) = match dimension {
+            Dimension::Space => (BESIDE, |kind| kind == CellKind::Line || kind.is_face()),
+            Dimension::Plane => ("has lines beside its faces, which are left out", |kind| kind == CellKind::Line),
+        };
+        let lost = self.chosen(is_thin).filter(|(.., corners)| corners.iter().any(is_lost)).count();
+        if lost > 0 && !self.notes.iter().any(|note| note.starts_with(what)) {
+            self.notes.push(format!("{what}: {lost}"));
+        }
+        let groups = self.groups.iter().filter(|group| lost > 0 && group.points.iter().all(is_lost));
+        let mut names: Vec<_> = groups.map(|group| quoted(group.name.as_bytes())).collect();
+        if names.len() > MOST {
+            names.truncate(MOST);
+            names.push("…".to_owned());
+        }
+        if !names.is_empty() {
+            self.notes.push(format!("has groups whose points are all left out: {}", names.join(", ")));
+        }
+    }
+
     /// A volume of ordered cells.
     fn ordered(mut self, parts: Parts, dimension: Dimension, solids: Solids) -> Result<Volume, ReadError> {
         let (lists, turned, notes) = parts.finished(&self.corners, &self.points)?;
         self.notes.extend(notes);
+        self.tell_beside(dimension, &lists);
         Ok(self.volume(dimension, solids, &lists, turned))
     }
 

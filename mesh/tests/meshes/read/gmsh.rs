@@ -74,3 +74,36 @@ fn negative_groups_of_gmsh_keep_their_names() {
     assert!(old.contains("2 2 4 2 1 1 1 1 5 7\n3 2 4 -2 1 1 1 1 7 3"), "one triangle of either sign");
     assert_eq!(groups(&volume(old, Format::Gmsh))[1], ("ü", 4));
 }
+
+/// Faces at the surface of the solids name parts of it, and are left out without a word.
+#[test]
+fn faces_and_lines_apart_from_the_solids_are_told() {
+    let text = |more: &str, count: usize| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 8 \"rod\"\n2 9 \"sheet\"\n3 1 \"vol\"\n$EndPhysicalNames\n\
+             $Nodes\n7\n1 0 0 0\n2 2 0 0\n3 0 1 0\n4 0 0 3\n5 5 0 0\n6 6 0 0\n7 5 1 0\n$EndNodes\n$Elements\n{count}\n\
+             1 4 2 1 1 1 2 3 4\n{more}$EndElements\n"
+        )
+    };
+    let beside = "has lines and faces beside its solids, which are left out";
+    let lost = "has groups whose points are all left out";
+    for (more, count, names, notes) in [
+        ("2 2 2 9 9 1 2 3\n3 1 2 8 8 1 4\n", 3, vec![("rod", 2), ("sheet", 3), ("vol", 4)], vec![]),
+        ("2 2 2 9 9 5 6 7\n", 2, vec![("vol", 4)], vec![format!("{beside}: 1"), format!("{lost}: `sheet`")]),
+        ("2 2 2 9 9 1 6 7\n", 2, vec![("sheet", 1), ("vol", 4)], vec![format!("{beside}: 1")]),
+        (
+            "2 2 2 9 9 5 6 7\n3 1 2 8 8 5 6\n4 15 2 8 8 5\n",
+            4,
+            vec![("vol", 4)],
+            vec![format!("{beside}: 2"), format!("{lost}: `point 8`, `rod`, `sheet`")],
+        ),
+    ] {
+        let found = volume(text(more, count), Format::Gmsh);
+        assert_eq!((groups(&found), &found.notes), (names, &notes), "{more}");
+        assert!((whole(&found) - 1.0).abs() < 1e-12);
+    }
+    // Lines beside faces in the plane.
+    let plane = text("2 1 2 8 8 5 6\n", 2).replace("1 4 2 1 1 1 2 3 4", "1 2 2 9 9 1 2 3");
+    let found = volume(plane, Format::Gmsh);
+    assert_eq!(found.notes, ["has lines beside its faces, which are left out: 1".to_owned(), format!("{lost}: `rod`")]);
+}
