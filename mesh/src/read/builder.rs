@@ -3,7 +3,7 @@
 mod finish;
 
 use super::order::along;
-use super::source::Source;
+use super::source::{Coding, Source};
 use super::{CellKind, Cells, Limits, ReadError};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -100,6 +100,22 @@ impl<'l> Builder<'l> {
         }
         self.lost.push((self.points() as u32, at));
         self.point(DVec3::ZERO)
+    }
+
+    /// Tells of what is left behind the points and faces that a header counts.
+    pub(super) fn tell_rest(&mut self, source: &mut Source<'_>) {
+        if source.coding == Coding::Text {
+            if !source.is_done() {
+                let place = source.place(source.at);
+                self.cells
+                    .notes
+                    .push(format!("has more than its header counts, from what is {place} on, which is not read"));
+            }
+        // Files may end with zeros or with the end of a line.
+        } else if source.rest().iter().any(|byte| !byte.is_ascii_whitespace() && *byte != 0) {
+            let rest = source.rest().len();
+            self.cells.notes.push(format!("has {rest} bytes more than its header counts, which are not read"));
+        }
     }
 
     /// The index of a point, counted from 0, that was found at a place.

@@ -49,5 +49,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         }
         builder.face(&corners)?;
     }
+    if let Some(mut rest) = source.next_line(b'#') {
+        builder.tell_rest(&mut rest);
+    }
     builder.finish(&source, 0)
 }

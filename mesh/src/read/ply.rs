@@ -41,6 +41,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
             }
         }
     }
+    builder.tell_rest(&mut source);
     builder.finish(&source, 0)
 }
 

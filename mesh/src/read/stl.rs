@@ -111,6 +111,10 @@ fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder<'_>) -> Res
         source.skip(1, Scalar::U16, "two bytes after a triangle")?;
         welder.triangle(corners)?;
     }
+    // Some programs write a few bytes of their own.
+    if source.rest().len() >= TRIANGLE {
+        welder.builder.tell_rest(source);
+    }
     Ok(())
 }
 

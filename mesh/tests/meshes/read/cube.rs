@@ -239,3 +239,39 @@ fn nodes_of_gltf_move_turn_and_mirror_meshes() {
     let found = surface(&bytes, format);
     assert!((inside(&found) - 4.0).abs() < 1e-6, "{}", inside(&found));
 }
+
+/// Several files behind each other, and headers that are wrong.
+#[test]
+fn what_a_file_has_beyond_the_counts_of_its_header_is_told() {
+    let (_, binary) = stl();
+    let mut short = binary.clone();
+    short[80] = 6;
+    for (bytes, triangles, rest) in
+        [([&binary[..], &binary].concat(), 12, 684), (short, 6, 300), ([&binary[..], &[7; 50]].concat(), 12, 50)]
+    {
+        let found = surface(bytes, Format::Stl);
+        assert_eq!(found.triangles.len(), triangles);
+        assert_eq!(found.notes, [format!("has {rest} bytes more than its header counts, which are not read")]);
+    }
+    // Less than a triangle, and zeros.
+    for more in [&[7; 49][..], &[0; 512]] {
+        assert_eq!(surface([&binary[..], more].concat(), Format::Stl).notes, [""; 0]);
+    }
+    let more =
+        |place: usize| [format!("has more than its header counts, from what is in line {place} on, which is not read")];
+    let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    assert_eq!(surface(format!("{off}# a\n\n3 0 2 1\n"), Format::Off).notes, more(9));
+    assert_eq!(surface(format!("{off}# a\n\n"), Format::Off).notes, [""; 0]);
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+                property list uchar int vertex_indices\nend_header\n";
+    let ply = format!("{head}0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    assert_eq!(surface(format!("{ply}3 0 2 1\n"), Format::Ply).notes, more(14));
+    assert_eq!(surface(format!("{ply}\n \n"), Format::Ply).notes, [""; 0]);
+    let mut bytes = head.replace("ascii", "binary_little_endian").into_bytes();
+    [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|value: &f32| bytes.extend(value.to_le_bytes()));
+    bytes.push(3);
+    (0..3).for_each(|index: i32| bytes.extend(index.to_le_bytes()));
+    assert_eq!(surface([&bytes[..], b"\r\n\0"].concat(), Format::Ply).notes, [""; 0]);
+    let found = surface([&bytes[..], &bytes[bytes.len() - 13..]].concat(), Format::Ply);
+    assert_eq!(found.notes, ["has 13 bytes more than its header counts, which are not read"]);
+}
