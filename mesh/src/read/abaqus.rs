@@ -8,7 +8,7 @@ use super::builder::{self, Builder};
 use super::gmsh::Kind;
 use super::meshing::BESIDE;
 use super::source::{DAMAGED, Scalar, Source};
-use super::tags::Tags;
+use super::tags::{self, Tags};
 use super::{Cells, Format, Limits, ReadError, content};
 use keyword::Keyword;
 use std::collections::BTreeMap;
@@ -145,7 +145,7 @@ impl Reader<'_, '_> {
     }
 
     fn nodes(&mut self, keyword: &Keyword<'_>) -> Result<(), ReadError> {
-        let first = self.builder.points() as u32;
+        let mut members = Vec::new();
         while let Some(line) = data(&mut self.source) {
             let (mut tag, mut point) = (None, [0.0; 3]);
             for (at, field) in line.fields() {
@@ -160,9 +160,9 @@ impl Reader<'_, '_> {
                 }
             }
             let tag = tag.ok_or_else(|| line.found(",", line.at, "the number of a node"))?;
-            self.tags[NODES].push(tag, self.builder.point_at(point.into(), line.at)?);
+            members.push(self.tags[NODES].node(tag, point.into(), line.at, &line, &mut self.builder)?);
         }
-        self.add(NODES, keyword.get("NSET"), first..self.builder.points() as u32);
+        self.add(NODES, keyword.get("NSET"), members);
         Ok(())
     }
 
@@ -188,9 +188,18 @@ impl Reader<'_, '_> {
             }
             last = line;
             if let Some(number) = tag.filter(|_| found.len() == kind.nodes) {
-                self.tags[ELEMENTS].push(number, self.builder.cells.kinds.len() as u32);
+                let before = self.tags[ELEMENTS].get(number).map(|before| before as usize);
+                let new = self.builder.cells.kinds.len();
                 self.builder.is_curved |= kind.nodes > kind.corners;
                 self.builder.around(kind.cell, &found[..kind.corners])?;
+                let cells = &self.builder.cells;
+                let is_equal = |before: usize| {
+                    cells.kinds[before] == cells.kinds[new] && cells.corners[before] == cells.corners[new]
+                };
+                if before.is_some_and(|before| !is_equal(before)) {
+                    return Err(tags::twice("element", number, "another one", last.place(last.at)));
+                }
+                self.tags[ELEMENTS].push(number, new as u32);
                 tag = None;
                 found.clear();
             } else if found.len() > kind.nodes {

@@ -188,9 +188,10 @@ impl Reader<'_, '_> {
                 tags.push(self.source.integer(self.size, "the number of a node")?);
             }
             for &tag in &tags {
-                let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
+                let point = self.source.point(Scalar::F64)?;
+                let at = self.source.at - 1;
                 self.source.skip(parameters, Scalar::F64, "a parameter")?;
-                self.tags.push(tag, self.builder.point_at(point, at)?);
+                self.tags.node(tag, point, at, &self.source, &mut self.builder)?;
             }
         }
         Ok(())

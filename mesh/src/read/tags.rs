@@ -1,7 +1,9 @@
 //! The numbers by which files name their nodes and elements.
 
 use super::ReadError;
+use super::builder::Builder;
 use super::source::{DAMAGED, Source};
+use glam::DVec3;
 use std::collections::HashMap;
 
 /// The index of each number of a node or an element. Most files count them one after the other.
@@ -39,10 +41,34 @@ impl Tags {
         }
     }
 
+    /// The index of a node with this number and position, which were found at a place: a new one, or that of an equal one before.
+    pub(super) fn node(
+        &mut self,
+        tag: i64,
+        point: DVec3,
+        at: usize,
+        source: &Source<'_>,
+        builder: &mut Builder<'_>,
+    ) -> Result<u32, ReadError> {
+        let Some(index) = self.get(tag) else {
+            let index = builder.point_at(point, at)?;
+            self.push(tag, index);
+            return Ok(index);
+        };
+        let is_equal = !point.is_finite() || builder.cells.points.get(index as usize) == Some(&point);
+        if is_equal { Ok(index) } else { Err(twice("node", tag, "at another place", source.place(at))) }
+    }
+
     /// The index of a number that was found at a place.
     pub(super) fn find(&self, tag: i64, what: &str, at: usize, source: &Source<'_>) -> Result<u32, ReadError> {
         self.get(tag).ok_or_else(|| {
             ReadError::new(format!("names {what} {tag} {}, which it does not have", source.place(at)), DAMAGED)
         })
     }
+}
+
+/// The error of a number that was found at a place and has another meaning before.
+pub(super) fn twice(what: &str, tag: i64, how: &str, place: String) -> ReadError {
+    let message = format!("has {what} {tag} {place}, which is {how} before; expected each number once");
+    ReadError::new(message, format!("remove one of the two, or give each {what} a number of its own"))
 }

@@ -12,8 +12,8 @@ impl Reader<'_, '_> {
         self.source.coding = self.coding;
         for _ in 0..count {
             let tag = self.int("the number of a node")?;
-            let (at, point) = (self.source.at, self.source.point(Scalar::F64)?);
-            self.tags.push(tag, self.builder.point_at(point, at)?);
+            let point = self.source.point(Scalar::F64)?;
+            self.tags.node(tag, point, self.source.at - 1, &self.source, &mut self.builder)?;
         }
         self.source.coding = Coding::Text;
         Ok(())

@@ -107,3 +107,30 @@ fn faces_and_lines_apart_from_the_solids_are_told() {
     let found = volume(plane, Format::Gmsh);
     assert_eq!(found.notes, ["has lines beside its faces, which are left out: 1".to_owned(), format!("{lost}: `rod`")]);
 }
+
+#[test]
+fn numbers_of_gmsh_nodes_at_two_places_are_refused() {
+    let old = |again: &str| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 2 0 0\n3 0 1 0\n4 0 0 3\n{again}\n$EndNodes\n\
+             $Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n"
+        )
+    };
+    let new = |again: &str| {
+        let (tag, place) = again.split_once(' ').expect("a number and coordinates");
+        format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 5 1 4\n3 1 0 5\n1\n2\n3\n4\n{tag}\n0 0 0\n2 0 0\n0 1 0\n0 0 3\n{place}\n\
+             $EndNodes\n$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n"
+        )
+    };
+    for (text, line) in [(old("2 2 0 9"), 10), (new("2 2 0 9"), 16)] {
+        let found = refusal(&text, Format::Gmsh);
+        let expected =
+            format!("has node 2 in line {line}, which is at another place before; expected each number once (");
+        assert!(found.starts_with(&expected), "{text}: {found}");
+    }
+    for text in [old("2 2 0 0"), new("2 2 0 0")] {
+        let found = volume(text, Format::Gmsh);
+        assert_eq!((found.cells.len(), found.points.len(), whole(&found)), (1, 4, 1.0));
+    }
+}
