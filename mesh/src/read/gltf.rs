@@ -14,13 +14,13 @@ use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic, Skin};
 
 pub(super) fn read(bytes: &[u8], limits: &Limits, beside: &mut Beside<'_>) -> Result<Cells, ReadError> {
-    let (document, blob) = document::read(bytes)?;
+    let (document, blob, is_hidden) = document::read(bytes)?;
     let mut scene = Scene {
         lists: Lists::new(&document, blob, beside, limits)?,
         builder: Builder::new(limits),
         places: vec![None; document.nodes().len()],
     };
-    let nodes = scene.place(&document)?;
+    let nodes = scene.place(&document, &is_hidden)?;
     nodes.iter().try_for_each(|node| scene.add(node))?;
     if scene.builder.is_empty() {
         let message = "shows nothing: no node of its scene has a mesh of triangles";
@@ -38,29 +38,39 @@ struct Scene<'b, 'l> {
 }
 
 impl Scene<'_, '_> {
-    /// The nodes of the scene in the order of the tree, with their places noted.
-    fn place<'d>(&mut self, document: &'d Document) -> Result<Vec<Node<'d>>, ReadError> {
-        // The nodes to visit, the next last.
-        let mut next: Vec<(Node<'_>, DMat4)> = Vec::new();
+    /// The nodes of the scene that are not hidden in the order of the tree, with the places of all noted.
+    fn place<'d>(&mut self, document: &'d Document, is_hidden: &[bool]) -> Result<Vec<Node<'d>>, ReadError> {
+        // The nodes to visit, the next last, with the transform of what is above them and whether that is shown.
+        let mut next: Vec<(Node<'_>, DMat4, bool)> = Vec::new();
+        let root = |node| (node, DMat4::IDENTITY, true);
         match document.default_scene().or_else(|| document.scenes().next()) {
-            Some(scene) => next.extend(scene.nodes().map(|node| (node, DMat4::IDENTITY))),
+            Some(scene) => next.extend(scene.nodes().map(root)),
             None => {
                 let mut is_root = vec![true; document.nodes().len()];
                 document.nodes().flat_map(|node| node.children()).for_each(|child| is_root[child.index()] = false);
-                next.extend(document.nodes().filter(|node| is_root[node.index()]).map(|node| (node, DMat4::IDENTITY)));
+                next.extend(document.nodes().filter(|node| is_root[node.index()]).map(root));
             }
         }
         next.reverse();
-        let mut nodes = Vec::new();
-        while let Some((node, above)) = next.pop() {
+        let (mut nodes, mut hidden) = (Vec::new(), 0);
+        while let Some((node, above, is_above_shown)) = next.pop() {
+            let is_shown = is_above_shown && is_hidden.get(node.index()) != Some(&true);
             let place = above * matrix(node.transform());
             if self.places[node.index()].replace(place).is_some() {
                 let message = format!("has the node {} below two others, or below itself", node.index());
                 return Err(ReadError::damaged(message));
             }
-            let children: Vec<_> = node.children().map(|child| (child, place)).collect();
+            let children: Vec<_> = node.children().map(|child| (child, place, is_shown)).collect();
             next.extend(children.into_iter().rev());
-            nodes.push(node);
+            if is_shown {
+                nodes.push(node);
+            } else {
+                hidden += usize::from(node.mesh().is_some());
+            }
+        }
+        if hidden > 0 {
+            let note = format!("has meshes that it hides (KHR_node_visibility), which are left out: {hidden}");
+            self.builder.cells.notes.push(note);
         }
         Ok(nodes)
     }

@@ -10,8 +10,8 @@ use gltf::json::{Root, Value};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// The structure of a file, and the binary data of a `.glb`.
-type Parts<'b> = (Document, Option<Cow<'b, [u8]>>);
+/// The structure of a file, the binary data of a `.glb`, and whether each node is hidden.
+type Parts<'b> = (Document, Option<Cow<'b, [u8]>>, Vec<bool>);
 
 pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
     /// The length of the header of a `.glb`, which the length in it includes.
@@ -44,6 +44,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
     if is_old(&value) {
         return Err(old());
     }
+    check_version(&value)?;
+    let is_hidden = value.get("nodes").and_then(Value::as_array).into_iter().flatten().map(is_hidden).collect();
     // Scenes may leave out their lists of nodes.
     for scene in value.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
         if let Some(scene) = scene.as_object_mut() {
@@ -69,15 +71,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
     });
     match first {
         Some(error) => Err(no(error)),
-        None => Ok((Document::from_json_without_validation(root), blob)),
+        None => Ok((Document::from_json_without_validation(root), blob, is_hidden)),
     }
 }
 
 /// Refuses a file that needs what is not read here.
 fn check_extensions(root: &Root) -> Result<(), ReadError> {
-    /// Those about looks and data, which change no place of a point, and that for coordinates as integers.
-    const READ: &str = "KHR_mesh_quantization KHR_lights_ KHR_materials_ KHR_texture_ KHR_xmp EXT_lights_ EXT_mesh_features \
-                        EXT_structural_metadata EXT_texture_ MSFT_texture_";
+    /// Those about looks and data, which change no place of a point, and those for coordinates as integers and for hidden nodes.
+    const READ: &str = "KHR_mesh_quantization KHR_node_visibility KHR_lights_ KHR_materials_ KHR_texture_ KHR_xmp EXT_lights_ \
+                        EXT_mesh_features EXT_structural_metadata EXT_texture_ MSFT_texture_";
     // A scene without its copies is another, although the format leaves them to the reader if they are only used.
     let copies = root.extensions_used.iter().filter(|name| *name == "EXT_mesh_gpu_instancing");
     let is_read = |name: &&String| READ.split(' ').any(|read| name.starts_with(read));
@@ -91,6 +93,24 @@ fn check_extensions(root: &Root) -> Result<(), ReadError> {
         message,
         "export it again without compression and extensions, and with copies as meshes of their own",
     ))
+}
+
+/// Whether a node is hidden with all below it (`KHR_node_visibility`).
+fn is_hidden(node: &Value) -> bool {
+    let extension = node.get("extensions").and_then(|extensions| extensions.get("KHR_node_visibility"));
+    extension.and_then(|extension| extension.get("visible")).and_then(Value::as_bool) == Some(false)
+}
+
+/// Refuses a file that needs a later version. Those of 2.1 and later may be read as 2.0 if they do not say otherwise.
+fn check_version(value: &Value) -> Result<(), ReadError> {
+    let asset = |key: &str| value.get("asset").and_then(|asset| asset.get(key)).and_then(Value::as_str);
+    let later = match (asset("version"), asset("minVersion")) {
+        (_, Some(least)) if least != "2.0" => least,
+        (Some(version), _) if version.split('.').next() != Some("2") => version,
+        _ => return Ok(()),
+    };
+    let message = format!("is a glTF file of the version {}; expected 2.0", quoted(later.as_bytes()));
+    Err(ReadError::new(message, "export it again as glTF 2.0 (.glb)"))
 }
 
 /// Whether a file is one of version 1.0, which names things where 2.0 numbers them.

@@ -363,3 +363,47 @@ fn lists_of_gltf_are_not_longer_than_its_data() {
     assert!(found.starts_with(expected), "{found}");
     assert!(read_cells(json.as_bytes(), Format::Gltf, &LIMITS).is_ok());
 }
+
+/// A triangle at each of three nodes, the last below the second; the parts of the nodes and of `asset` are given.
+fn nodes(asset: &str, second: &str, rest: &str) -> String {
+    format!(
+        r#"{{"asset":{{{asset}}},"buffers":[{{"byteLength":36,"uri":"data:a;base64,AAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"scenes":[{{"nodes":[0,1]}}],
+        "nodes":[{{"mesh":0}},{{"mesh":0,"children":[2]{second}}},{{"mesh":0}}]{rest}}}"#
+    )
+}
+
+#[test]
+fn hidden_nodes_of_gltf_are_left_out_with_those_below() {
+    let visible = |visible: &str| format!(r#","extensions":{{"KHR_node_visibility":{{"visible":{visible}}}}}"#);
+    let (version, used) = (r#""version":"2.0""#, r#","extensionsUsed":["KHR_node_visibility"]"#);
+    let required = format!(r#"{used},"extensionsRequired":["KHR_node_visibility"]"#);
+    for rest in [used, &required] {
+        let found = surface(nodes(version, &visible("false"), rest), Format::Gltf);
+        assert_eq!(found.triangles.len(), 1);
+        assert_eq!(found.notes, ["has meshes that it hides (KHR_node_visibility), which are left out: 2"]);
+        for second in ["", &visible("true"), &visible("0"), r#","extensions":{"KHR_node_visibility":{}}"#] {
+            let found = surface(nodes(version, second, rest), Format::Gltf);
+            assert_eq!((found.triangles.len(), found.notes.len()), (3, 0), "{second}");
+        }
+    }
+}
+
+/// Later files of the same major version are read as 2.0 unless they name another least version.
+#[test]
+fn gltf_of_later_versions_is_refused() {
+    for asset in [r#""version":"2.0""#, r#""version":"2.1""#, r#""version":"2.1","minVersion":"2.0""#] {
+        assert_eq!(surface(nodes(asset, "", ""), Format::Gltf).triangles.len(), 3, "{asset}");
+    }
+    for (asset, version) in [
+        (r#""version":"3.0""#, "3.0"),
+        (r#""version":"3.0","minVersion":"2.1""#, "2.1"),
+        (r#""version":"2.1","minVersion":"2.1""#, "2.1"),
+        (r#""version":"20.1""#, "20.1"),
+    ] {
+        let expected =
+            format!("is a glTF file of the version `{version}`; expected 2.0 (export it again as glTF 2.0 (.glb))");
+        assert_eq!(refusal(nodes(asset, "", ""), Format::Gltf), expected);
+    }
+}
