@@ -38,18 +38,25 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
 
 /// Reads `facet … vertex x y z vertex x y z vertex x y z … endfacet`, in any number of solids.
 fn text(source: &mut Source<'_>, welder: &mut Welder<'_>) -> Result<(), ReadError> {
+    let mut is_ended = false;
     loop {
         // The name of a solid may be any words.
         while source.peek().eq_ignore_ascii_case(b"solid") {
             source.line();
+            is_ended = false;
         }
         let word = source.word();
         // Some programs write `end solid`, `end facet` and `end loop`.
         if word.eq_ignore_ascii_case(b"endsolid") || word.eq_ignore_ascii_case(b"end") {
             source.line();
+            is_ended = true;
             continue;
         }
         if word.is_empty() {
+            if !is_ended {
+                let note = "has no `endsolid` behind its last facet, so that its end may be missing";
+                welder.builder.cells.notes.push(note.to_owned());
+            }
             return Ok(());
         }
         if !word.eq_ignore_ascii_case(b"facet") {

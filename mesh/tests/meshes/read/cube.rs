@@ -275,3 +275,29 @@ fn what_a_file_has_beyond_the_counts_of_its_header_is_told() {
     let found = surface([&bytes[..], &bytes[bytes.len() - 13..]].concat(), Format::Ply);
     assert_eq!(found.notes, ["has 13 bytes more than its header counts, which are not read"]);
 }
+
+#[test]
+fn a_text_of_stl_that_is_cut_behind_a_facet_is_told() {
+    let (text, _) = stl();
+    let missing = ["has no `endsolid` behind its last facet, so that its end may be missing"];
+    let end = "endfacet\n";
+    let cut = |text: &str, facets: usize| {
+        text.match_indices(end).nth(facets - 1).map(|(at, _)| text[..at + end.len()].to_owned()).expect("a facet")
+    };
+    for (text, triangles, notes) in [
+        (text.clone(), 12, &[][..]),
+        (text.replace("endsolid", "end solid"), 12, &[]),
+        (text.replace("endsolid a cube", "ENDSOLID"), 12, &[]),
+        (cut(&text, 12), 12, &missing),
+        (cut(&text, 5), 5, &missing),
+        // Of the second solid.
+        (format!("{text}{}", cut(&text, 5)), 17, &missing),
+        (format!("{}{text}", cut(&text, 5)), 17, &[]),
+    ] {
+        let found = surface(&text, Format::Stl);
+        assert_eq!(
+            (found.triangles.len(), &found.notes[..]),
+            (triangles, &notes.iter().map(|&note| note.to_owned()).collect::<Vec<_>>()[..])
+        );
+    }
+}
