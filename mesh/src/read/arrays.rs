@@ -23,7 +23,7 @@ pub(super) fn wanted(typed: &[u8], of_cells: bool, columns: usize) -> Option<&'s
     let of_points = || match typed {
         VELOCITY => Some(VELOCITY),
         PRESSURE => Some(PRESSURE),
-        _ => [DISPLACEMENT, U].iter().find(is).copied().filter(|_| is_vector),
+        _ => [VELOCITY, DISPLACEMENT, U].iter().find(is).copied().filter(|_| is_vector),
     };
     ghosts.or_else(|| if of_cells { None } else { of_points() })
 }

@@ -59,7 +59,7 @@ pub struct Cells {
     pub corners: IndexLists,
     /// Sets of points with a name, in ascending order.
     pub groups: Vec<Group>,
-    /// Velocity of each point, in the unit of the file a second: the point data `velocity` of VTK's grids.
+    /// Velocity of each point, in the unit of the file a second: the point data `velocity` of VTK's grids, in capital letters or not.
     pub velocities: Option<Vec<DVec3>>,
     /// Displacement of each point, in the unit of the file: the point data of VTK's grids named `displacement` or, without a pressure `p`
     /// beside it, `u`, in capital letters or not. They are not added to the points.

@@ -29,7 +29,11 @@ fn displacements_are_read_beside_points() {
     for name in ["U", "displacement", "Displacement"] {
         assert_eq!(of(name, 2, "0 0 0.5 0 0 0.25 1 2").displacements.as_deref(), Some(&plane[..]), "{name}");
     }
-    assert_eq!(of("velocity", 2, "0 0 0.5 0 0 0.25 1 2").velocities.as_deref(), Some(&plane[..]));
+    for name in ["velocity", "Velocity", "VELOCITY"] {
+        assert_eq!(of(name, 2, "0 0 0.5 0 0 0.25 1 2").velocities.as_deref(), Some(&plane[..]), "{name}");
+    }
+    // The length of a velocity.
+    assert_eq!(of("Velocity", 1, "0 0.5 0.25 1").velocities, None);
     // `U` beside a pressure is the velocity of OpenFOAM.
     for (name, is_read) in [("U", false), ("displacement", true)] {
         let pressure = r#"<PointData><DataArray type="Float64" Name="p" format="ascii">1 2 3 4</DataArray>"#;
