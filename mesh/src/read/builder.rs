@@ -39,6 +39,8 @@ pub(super) struct Builder<'l> {
     limits: &'l Limits,
     /// Whether cells of higher order gave their corners only.
     pub(super) is_curved: bool,
+    /// The number of polyhedra that are not convex.
+    pub(super) concave: usize,
     /// The highest index of a corner, and the place where it was found. Points may follow the cells that name them.
     highest: (u32, usize),
     /// The points without coordinates, and the places where they were found.
@@ -52,8 +54,22 @@ pub(super) struct Builder<'l> {
 impl<'l> Builder<'l> {
     pub(super) fn new(limits: &'l Limits) -> Self {
         let (cells, ghosts, groups, numbered, set_names, grouped) = Default::default();
-        let (is_curved, highest, lost, names, named) = Default::default();
-        Self { cells, ghosts, groups, numbered, set_names, grouped, limits, is_curved, highest, lost, names, named }
+        let (is_curved, concave, highest, lost, names, named) = Default::default();
+        Self {
+            cells,
+            ghosts,
+            groups,
+            numbered,
+            set_names,
+            grouped,
+            limits,
+            is_curved,
+            concave,
+            highest,
+            lost,
+            names,
+            named,
+        }
     }
 
     pub(super) fn points(&self) -> usize {

@@ -4,6 +4,8 @@ use super::CellKind;
 use super::ReadError;
 use super::builder::Builder;
 use super::source::DAMAGED;
+use glam::DVec3;
+use localshape_sim::geometry::bounds;
 
 /// Adds a cell of a type. Of cells of higher order the corners are taken, which VTK lists first.
 pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Result<(), ReadError> {
@@ -68,7 +70,10 @@ pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Build
     points.dedup();
     match known(faces, &points) {
         Some((kind, corners)) => builder.around(kind, &corners),
-        None => builder.cell(CellKind::Polyhedron, &points),
+        None => {
+            builder.concave += usize::from(is_concave(faces, &points, &builder.cells.points));
+            builder.cell(CellKind::Polyhedron, &points)
+        }
     }
 }
 
@@ -103,4 +108,27 @@ pub(super) fn known(faces: &[Vec<u32>], points: &[u32]) -> Option<(CellKind, Vec
     sorted.sort_unstable();
     // Faces may not fit together.
     (sorted == points).then_some((kind, corners))
+}
+
+/// Whether a polyhedron with these faces is smaller than the convex hull of its points: whether some are clearly on either side of a
+/// face. Faces need not be turned outwards. Those of very large cells are not looked at.
+fn is_concave(faces: &[Vec<u32>], corners: &[u32], points: &[DVec3]) -> bool {
+    /// The most points that are compared with faces: each with each.
+    const MOST: usize = 1_000_000;
+    /// What is nearer to a face, as parts of the size of the cell and of its distance from the origin, is in it: single precision.
+    const NEAR: [f64; 2] = [1e-5, 1e-6];
+    let places: Option<Vec<DVec3>> = corners.iter().map(|&corner| points.get(corner as usize).copied()).collect();
+    let Some(places) = places.filter(|places| places.len().saturating_mul(faces.len()) <= MOST) else { return false };
+    let (low, high) = bounds(&places);
+    let size = (high - low).max_element();
+    let near = NEAR[0] * size + NEAR[1] * low.abs().max(high.abs()).max_element();
+    let at = |corner: u32| points[corner as usize];
+    faces.iter().filter(|face| face.len() > 2).any(|face| {
+        let first = at(face[0]);
+        let normal: DVec3 = face.windows(2).map(|pair| (at(pair[0]) - first).cross(at(pair[1]) - first)).sum();
+        let normal = normal.normalize_or_zero();
+        let middle = face.iter().map(|&corner| at(corner) - first).sum::<DVec3>() / face.len() as f64;
+        let heights = || places.iter().map(|&place| (place - first - middle).dot(normal));
+        heights().any(|height| height > near) && heights().any(|height| height < -near)
+    })
 }

@@ -292,3 +292,46 @@ fn points_without_a_position_are_left_out_where_no_cell_has_them() {
     let found = volume(gmsh.replace("$Nodes\n8", "$Nodes\n9\n77 nan nan nan"), Format::Gmsh);
     assert_eq!((found.points.len(), found.notes.len()), (8, 1));
 }
+
+/// A prism of the height 1 over a polygon in the plane, as a polyhedron of a legacy file; its faces need not be turned outwards.
+fn prism(polygon: &[[f64; 2]], move_by: f64, is_turned: bool) -> String {
+    let count = polygon.len();
+    let points: String =
+        [0, 1].iter().flat_map(|z| polygon.iter().map(move |[x, y]| format!("{} {y} {z}\n", x + move_by))).collect();
+    let mut faces: Vec<Vec<usize>> = vec![(0..count).rev().collect(), (count..2 * count).collect()];
+    faces.extend((0..count).map(|at| vec![at, (at + 1) % count, (at + 1) % count + count, at + count]));
+    faces.iter_mut().step_by(2).filter(|_| is_turned).for_each(|face| face.reverse());
+    let lists: Vec<usize> =
+        faces.iter().flat_map(|face| std::iter::once(face.len()).chain(face.iter().copied())).collect();
+    let list = lists.iter().fold(faces.len().to_string(), |text, number| format!("{text} {number}"));
+    format!(
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} float\n{points}CELLS 1 {}\n{} {list}\n\
+         CELL_TYPES 1\n42\n",
+        2 * count,
+        lists.len() + 2,
+        lists.len() + 1
+    )
+}
+
+#[test]
+fn polyhedra_that_are_not_convex_are_told() {
+    const CORNER: [[f64; 2]; 6] = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]];
+    const STRAIGHT: [[f64; 2]; 6] = [[0., 0.], [1., 0.], [2., 0.], [2.3, 1.1], [1., 2.], [0., 2.]];
+    let told = ["has a polyhedron that is not convex, which becomes the hull of its points"];
+    for is_turned in [false, true] {
+        for (polygon, notes) in [(CORNER, &told[..]), (STRAIGHT, &[])] {
+            for move_by in [0.0, 1000.0] {
+                let found = volume(prism(&polygon, move_by, is_turned), Format::Vtk);
+                assert_eq!((found.cells.len(), found.cells[0].len()), (1, 12));
+                assert!(found.notes.iter().eq(notes), "{polygon:?}, {move_by}, {is_turned}: {:?}", found.notes);
+            }
+        }
+    }
+    let one = prism(&CORNER, 0.0, false);
+    let (start, end) = (one.find("CELLS").expect("cells"), one.find("CELL_TYPES").expect("types"));
+    let list = one[start..end].lines().nth(1).expect("a list");
+    let length: usize = list.split(' ').count();
+    let two = format!("{}CELLS 2 {}\n{list}\n{list}\nCELL_TYPES 2\n42 42\n", &one[..start], 2 * length);
+    let found = read_cells(two.as_bytes(), Format::Vtk, &LIMITS).expect("sound").notes;
+    assert_eq!(found, ["has 2 polyhedra that are not convex, which become the hulls of their points"]);
+}
