@@ -17,14 +17,15 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         return Err(ReadError::new(message, "convert it: `meshio convert FILE.meshb NEW.mesh`"));
     }
     let mut reader = Reader { source: Source::text(bytes), builder: Builder::new(limits), unread: Vec::new() };
-    if reader.word() != b"MeshVersionFormatted" {
+    reader.source.comment = Some(b'#');
+    if reader.source.word() != b"MeshVersionFormatted" {
         return Err(content::no_beginning(bytes, Format::Medit, "`MeshVersionFormatted`"));
     }
     // All versions are the same text.
     reader.count("the version")?;
     let mut dimension = 3;
     loop {
-        match reader.word() {
+        match reader.source.word() {
             b"End" => break,
             b"" => {
                 reader.builder.cells.notes.push("has no `End`, so that its end may be missing".to_owned());
@@ -53,16 +54,9 @@ struct Reader<'b, 'l> {
 }
 
 impl<'b> Reader<'b, '_> {
-    /// The next word outside of comments.
-    fn word(&mut self) -> &'b [u8] {
-        while self.source.peek().starts_with(b"#") {
-            self.source.line();
-        }
-        self.source.word()
-    }
-
     fn count(&mut self, expected: &str) -> Result<u64, ReadError> {
-        let word = self.word();
+        // Mistakes are told where the word is.
+        let word = self.source.word();
         self.source.at -= word.len();
         self.source.count(Scalar::I64, expected)
     }
@@ -140,7 +134,6 @@ impl<'b> Reader<'b, '_> {
         }
         loop {
             match self.source.peek().first() {
-                Some(b'#') => self.source.line(),
                 Some(first) if !first.is_ascii_alphabetic() => self.source.word(),
                 _ => return Ok(()),
             };

@@ -31,6 +31,8 @@ pub(super) struct Source<'b> {
     pub(super) coding: Coding,
     /// Whether a line that ends in a backslash goes on in the next.
     pub(super) continues: bool,
+    /// What begins a comment up to the end of the line wherever a word may stand, if anything does.
+    pub(super) comment: Option<u8>,
 }
 
 fn is_space(byte: u8) -> bool {
@@ -41,11 +43,11 @@ impl<'b> Source<'b> {
     /// A text, without its byte order mark.
     pub(super) fn text(bytes: &'b [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Self { bytes, at, end: bytes.len(), coding: Coding::Text, continues: true }
+        Self { bytes, at, end: bytes.len(), coding: Coding::Text, continues: true, comment: None }
     }
 
     pub(super) fn part(bytes: &'b [u8], start: usize, end: usize) -> Self {
-        Self { bytes, at: start, end, coding: Coding::Text, continues: true }
+        Self { bytes, at: start, end, coding: Coding::Text, continues: true, comment: None }
     }
 
     pub(super) fn rest(&self) -> &'b [u8] {
@@ -74,6 +76,7 @@ impl<'b> Source<'b> {
                 byte if is_space(byte) => self.at += 1,
                 // A line that is continued in the next.
                 b'\\' if self.continues && matches!(self.rest(), [b'\\', b'\n' | b'\r', ..]) => self.at += 1,
+                byte if self.comment == Some(byte) => drop(self.line()),
                 _ => break,
             }
         }

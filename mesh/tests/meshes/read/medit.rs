@@ -72,3 +72,17 @@ fn refusals_of_medit_files_say_where_and_what_to_do() {
         "has keywords that are not read: `TrianglesP7` in line 6, `HexahedraQ9` in line 9 (write triangles, ";
     assert!(found.starts_with(expected), "{found}");
 }
+
+#[test]
+fn comments_of_medit_stand_anywhere() {
+    let text = String::from_utf8(bytes_of("kinds.mesh")).expect("text");
+    let expected = volume(&text, Format::Medit);
+    let end = text.rfind("End").expect("an end");
+    for comment in ["# a", "  # End 1 2 3", "#1\n\n# 2"] {
+        let lines: Vec<String> = text[..end].lines().map(|line| format!("{line} # 9\n{comment}\n")).collect();
+        assert_eq!(volume(lines.concat() + "End # a\n", Format::Medit), expected, "{comment}");
+    }
+    // Numbers behind a comment have their lines.
+    let wrong = refusal(text.replacen("Vertices\n23", "Vertices\n# a\n23 # b\n# c\nx", 1), Format::Medit);
+    assert!(wrong.starts_with("has `x` in line 9; expected a coordinate"), "{wrong}");
+}

@@ -183,3 +183,31 @@ fn comments_are_not_continued() {
     let found = surface("OFF # a\\\n# b\\\n3 1 0\n0 0 0\n1 0 0 # c\\\n0 1 0\n# d\\\n3 0 1 2\n", Format::Off);
     assert_eq!((found.points.len(), found.triangles.len()), (3, 1));
 }
+
+#[test]
+fn points_and_faces_of_off_share_lines() {
+    let points = ["0 0 0", "1 0 0", "0 2 0", "0 0 3"];
+    let faces = ["3 0 2 1", "3 0 1 3", "3 1 2 3", "3 0 3 2"];
+    let [few, all] = [" ", "\n"].map(|between| points.join(between));
+    let lines = faces.join("\n");
+    let with = |extra: &str| points.map(|point| format!("{point} {extra}")).join(" ");
+    for text in [
+        format!("OFF 4 4 6 {few} {}", faces.join(" ")),
+        format!("OFF\n4 4 0 # a\n{few} # b\n# c\n{}\n", faces.join(" ")),
+        format!("OFF\n4 4 0\n{few}\n{lines}\n"),
+        format!("OFF\n4 4\n{few}\n{}\n", faces.join(" 255 0 0\n")),
+        format!("OFF\n4 4 0\n{all}\n{} {}\n{} {}\n", faces[0], faces[1], faces[2], faces[3]),
+        format!("NOFF\n4 4 0\n{}\n{lines}\n", with("0 0 1")),
+        format!("STCNOFF 4 4 0\n{}\n{lines}\n", with("0 0 1 255 0 0 255 0 1")),
+    ] {
+        let found = surface(&text, Format::Off);
+        let expected = [DVec3::ZERO, DVec3::X, 2.0 * DVec3::Y, 3.0 * DVec3::Z];
+        assert_eq!((&found.points[..], found.triangles.len(), found.notes.len()), (&expected[..], 4, 0), "{text}");
+        assert!((found.measures().volume - 1.0).abs() < 1e-15, "{text}");
+    }
+    // Files that end early are told as before, also where words of colours would be left.
+    let cut = refusal(format!("OFF\n4 4 0\n{all}\n{} 255 0 0\n{} 255 0 0\n", faces[0], faces[1]), Format::Off);
+    assert!(cut.starts_with("ends in line 9; expected face 3 of 4 (the file is incomplete"), "{cut}");
+    let cut = refusal("OFF\n4 4 0\n0 0 0 1 0 0\n", Format::Off);
+    assert!(cut.starts_with("ends in line 4; expected point 2 of 4 (the file is incomplete"), "{cut}");
+}
