@@ -163,13 +163,13 @@ impl<'a> Session<'a> {
         mut self,
         pool: &ThreadPool,
         options: &RunOptions,
-        (mut pictures, export): (Option<Box<dyn Pictures + '_>>, Export<'_>),
+        (mut pictures, mut export): (Option<Box<dyn Pictures + '_>>, Export<'_>),
         stored: Option<Stored>,
-        checkpoint: Option<Checkpoint>,
+        mut checkpoint: Option<Checkpoint>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
-        if let Some(found) = &checkpoint {
-            self.check_kept(found.progress.taken, pictures.as_deref_mut(), &export)?;
+        if let Some(found) = &mut checkpoint {
+            self.keep(found, pictures.as_deref_mut(), &mut export)?;
         }
         let (progress, rows, course) = match checkpoint {
             Some(Checkpoint { progress, causes, extremes, rows, course, .. }) => {
@@ -212,16 +212,19 @@ impl<'a> Session<'a> {
         self.conclude(result)
     }
 
-    /// Refuses a checkpoint if one of the pictures and exported files of its frames has changed.
-    fn check_kept(
+    /// Keeps the pictures and exported files of the frames before a checkpoint, or refuses it if one of them has changed.
+    fn keep(
         &self,
-        taken: usize,
+        checkpoint: &mut Checkpoint,
         pictures: Option<&mut (dyn Pictures + '_)>,
-        export: &Export<'_>,
+        export: &mut Export<'_>,
     ) -> Result<(), Failure> {
-        let taken = self.frames.get(..taken).unwrap_or_default();
-        let wrong = pictures.map_or(Ok(None), |pictures| pictures.keep(taken))?;
-        let Some(wrong) = wrong.map_or_else(|| export.wrong(taken), |wrong| Ok(Some(wrong)))? else { return Ok(()) };
+        let taken = self.frames.get(..checkpoint.progress.taken).unwrap_or_default();
+        let mut wrong = pictures.map_or(Ok(None), |pictures| pictures.keep(taken))?;
+        if wrong.is_none() {
+            wrong = export.keep(taken, std::mem::take(&mut checkpoint.exported))?;
+        }
+        let Some(wrong) = wrong else { return Ok(()) };
         let what = format!("counts on {wrong}").into();
         Err(OutputError::Checkpoint { path: self.folder.path().to_owned(), what }.into())
     }

@@ -73,7 +73,7 @@ impl Results<'_> {
         folder: &Claimed,
         summary: &Summary,
     ) -> Result<(), Failure> {
-        let Self { diagnostics, states, pictures, warned, .. } = self;
+        let Self { diagnostics, states, export, pictures, warned } = self;
         if let Some(pictures) = pictures {
             pictures.flush()?;
         }
@@ -87,6 +87,7 @@ impl Results<'_> {
             if !ahead {
                 checkpoint.rows = diagnostics.as_mut().map(DiagnosticsWriter::sync).transpose().map_err(failed)?;
                 checkpoint.course = states.as_mut().map(StatesWriter::sync).transpose().map_err(failed)?;
+                checkpoint.exported = export.written();
             }
             checkpoint.write(path, whose)
         };

@@ -70,13 +70,24 @@ pub(crate) struct Checkpoint {
     pub(crate) rows: Option<Grown>,
     /// The states written so far, if states are written.
     pub(crate) course: Option<(CourseSoFar, Grown)>,
+    /// Checksums of the files for other programs of the frames written so far.
+    pub(crate) exported: Vec<u64>,
 }
 
 impl Checkpoint {
     /// The checkpoint of a command with a manifest.
     pub(crate) fn new(command: Vec<String>, manifest: &Manifest, progress: Progress) -> Self {
         let (causes, extremes) = Default::default();
-        Self { command, manifest: digest(manifest), progress, causes, extremes, rows: None, course: None }
+        Self {
+            command,
+            manifest: digest(manifest),
+            progress,
+            causes,
+            extremes,
+            rows: None,
+            course: None,
+            exported: Vec::new(),
+        }
     }
 
     /// Writes the checkpoint into a folder, replacing an earlier one. The files that it refers to must be on the disk.

@@ -234,23 +234,30 @@ fn files_belong_to_their_scene() {
 fn files_after_an_interruption_are_those_without_one() {
     let place = Place::new();
     place.write("scene.toml", &crate::cli::support::lasting("8"));
-    place.run("simulate scene.toml --write vtu -o whole").good();
+    place.run("simulate scene.toml --write vtu --write obj -o whole").good();
     for (signal, sign) in [("TERM", "out/Local shape/body_00003.vtu"), ("KILL", "out/Local shape/body_00020.vtu")] {
-        let typed = "simulate scene.toml --write vtu -o out";
+        let typed = "simulate scene.toml --write vtu --write obj -o out";
         let running = crate::cli::interrupt::start(&place, typed, sign);
         crate::cli::interrupt::signal(&running, &[signal]);
         running.wait();
         let before = place.names("out/Local shape").len();
-        assert!((4..481).contains(&before), "{before}");
+        assert!((4..962).contains(&before), "{before}");
         if signal == "TERM" {
             let listed = place.read("out/Local shape.pvd").matches("<DataSet").count();
             assert_eq!(listed, place.json("out/run.json")["frames"]["recorded"].as_u64().unwrap() as usize);
-            assert_eq!(listed, before);
-            let lost = place.path("out/Mass-spring/body_00002.vtu");
-            let bytes = std::fs::read(&lost).unwrap();
-            std::fs::remove_file(&lost).unwrap();
-            place.run(&format!("{typed} --resume")).bad(2, &["Mass-spring/body_00002.vtu, which is missing or"]);
-            std::fs::write(&lost, bytes).unwrap();
+            assert_eq!(2 * listed, before);
+            for name in ["Mass-spring/body_00002.vtu", "Mass-spring/frame_00002.obj"] {
+                let words = format!("{name}, which is missing, damaged or replaced since; restore it");
+                let path = place.path("out").join(name);
+                let bytes = std::fs::read(&path).unwrap();
+                std::fs::remove_file(&path).unwrap();
+                place.run(&format!("{typed} --resume")).bad(2, &[&words]);
+                let mut damaged = bytes.clone();
+                damaged[bytes.len() / 2] ^= 1;
+                std::fs::write(&path, damaged).unwrap();
+                place.run(&format!("{typed} --resume")).bad(2, &[&words]);
+                std::fs::write(&path, bytes).unwrap();
+            }
             place.run("simulate scene.toml -o out --resume").bad(2, &["other frames, runs, states, files or size"]);
         }
         place.run(&format!("{typed} --resume")).good();

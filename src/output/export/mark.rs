@@ -33,14 +33,6 @@ pub(in crate::output) fn scene_of(path: &Path) -> Result<Option<String>, OutputE
     Ok(digest)
 }
 
-/// Whether a file has a mark; `false` if there is no such file.
-///
-/// # Errors
-/// If it cannot be read.
-pub(super) fn starts_with(path: &Path, mark: &str) -> Result<bool, OutputError> {
-    Ok(path.is_file() && head(path)?.contains(mark))
-}
-
 /// The beginning of a file.
 fn head(path: &Path) -> Result<String, OutputError> {
     let mut bytes = Vec::new();

@@ -14,7 +14,7 @@ mod surface;
 mod usda;
 mod vtu;
 
-use super::{AtomicFile, OutputError, StatesWriter, write_whole};
+use super::{AtomicFile, OutputError, StatesWriter, read_file, write_whole};
 use crate::carried::positions;
 use crate::reading::captions::typed;
 use crate::reading::words::{count, quoted};
@@ -22,9 +22,10 @@ use crate::runner::{Frame, RunFrame};
 use crate::scene::{Run, Scene};
 use crate::sim::{Body, Carried, Snapshot, Support};
 use course::Course;
+use mark::mark;
 pub(super) use mark::scene_of;
-use mark::{mark, starts_with};
 use rayon::prelude::*;
+use sha2::{Digest, Sha256};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
@@ -68,6 +69,8 @@ pub(crate) struct Export<'a> {
     surfaces: Vec<FilesOf<Surface>>,
     /// The requested frames, those of other shards included.
     frames: Vec<u64>,
+    /// Checksums of the files of frames written so far, in the order of `frame_files`.
+    written: Vec<u64>,
 }
 
 /// Files of a run, with grids or surfaces of its bodies.
@@ -121,29 +124,40 @@ impl<'a> Export<'a> {
             fs::create_dir_all(&path).map_err(OutputError::writing(&path))?;
         }
         let (folder, formats, frames) = (folder.to_owned(), formats.to_vec(), frames.to_vec());
-        Ok(Self { scene, folder, formats, grids, surfaces, frames })
+        Ok(Self { scene, folder, formats, grids, surfaces, frames, written: Vec::new() })
     }
 
     /// Writes the files of a frame.
     ///
     /// # Errors
     /// If one cannot be written; others may have been.
-    pub(crate) fn write(&self, frame: &Frame) -> Result<(), OutputError> {
+    pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
+        let write = |file: &str, bytes: &[u8]| -> Result<u64, OutputError> {
+            write_whole(&self.folder.join(file), bytes)?;
+            Ok(checksum(bytes))
+        };
         let files: Vec<_> = self.grids.iter().flat_map(|run| run.bodies.iter().map(move |body| (run, body))).collect();
-        files.par_iter().try_for_each(|(run, body)| {
-            let path = self.folder.join(run.grid_file(body, frame.index));
-            write_whole(&path, &self.grid(body, frame.index, &frame.runs[run.place]))
-        })?;
-        if !self.formats.contains(&Format::Obj) {
-            return Ok(());
+        let grids = files.par_iter().map(|(run, body)| {
+            write(&run.grid_file(body, frame.index), &self.grid(body, frame.index, &frame.runs[run.place]))
+        });
+        let mut written = grids.collect::<Result<Vec<_>, _>>()?;
+        if self.formats.contains(&Format::Obj) {
+            let surfaces = self.surfaces.par_iter().map(|run| {
+                let Snapshot { time, position, .. } = &frame.runs[run.place].snapshot;
+                let bodies = run.bodies.iter().map(|body| (body.title(), &body.shown, &position[body.nodes.clone()]));
+                let times = [*time, self.scene.runs[run.run].step];
+                let text = obj::document(&mark(self.scene, Some(frame.index)), times, bodies);
+                write(&run.frame_file(frame.index), text.as_bytes())
+            });
+            written.extend(surfaces.collect::<Result<Vec<_>, _>>()?);
         }
-        self.surfaces.par_iter().try_for_each(|run| {
-            let Snapshot { time, position, .. } = &frame.runs[run.place].snapshot;
-            let bodies = run.bodies.iter().map(|body| (body.title(), &body.shown, &position[body.nodes.clone()]));
-            let text =
-                obj::document(&mark(self.scene, Some(frame.index)), [*time, self.scene.runs[run.run].step], bodies);
-            write_whole(&self.folder.join(run.frame_file(frame.index)), text.as_bytes())
-        })
+        self.written.extend(written);
+        Ok(())
+    }
+
+    /// Checksums of the files of frames written so far.
+    pub(crate) fn written(&self) -> Vec<u64> {
+        self.written.clone()
     }
 
     /// The files of a frame, below the output folder.
@@ -183,19 +197,19 @@ impl<'a> Export<'a> {
         vtu::document(&mark, *time, cells, position, &of_points, &of_cells)
     }
 
-    /// The first fault of the files of frames that an earlier command has written, in words; `None` if all are as they were.
+    /// Goes on after frames that an earlier command has written, whose files had some checksums. Returns the first fault of these files
+    /// in words; `None` if all are as they were.
     ///
     /// # Errors
     /// If one cannot be read.
-    pub(crate) fn wrong(&self, frames: &[u64]) -> Result<Option<String>, OutputError> {
-        for &frame in frames {
-            let mark = mark(self.scene, Some(frame));
-            for file in self.frame_files(frame) {
-                if !starts_with(&self.folder.join(&file), &mark)? {
-                    return Ok(Some(format!("{file}, which is missing or has been replaced since; restore it")));
-                }
+    pub(crate) fn keep(&mut self, frames: &[u64], written: Vec<u64>) -> Result<Option<String>, OutputError> {
+        let files = frames.iter().flat_map(|&frame| self.frame_files(frame));
+        for (file, written) in files.zip(&written) {
+            if read_file(&self.folder.join(&file))?.is_none_or(|bytes| checksum(&bytes) != *written) {
+                return Ok(Some(format!("{file}, which is missing, damaged or replaced since; restore it")));
             }
         }
+        self.written = written;
         Ok(None)
     }
 
@@ -298,6 +312,11 @@ impl<T> OfBody<T> {
     fn title(&self) -> &str {
         or_body(&self.name)
     }
+}
+
+/// The first bytes of the SHA-256 digest of a file.
+fn checksum(bytes: &[u8]) -> u64 {
+    Sha256::digest(bytes).iter().take(8).fold(0, |sum, &byte| sum << 8 | u64::from(byte))
 }
 
 /// The name of a body in files.
