@@ -51,7 +51,7 @@ pub(crate) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
 /// `frame (7).png`. A minus before it is the sign of the number if another of the files has the number 0 without it.
 ///
 /// # Errors
-/// The folder cannot be read, or has several such sequences.
+/// The folder cannot be read, or has several such sequences, or the numbers may be those behind decimal points: 0.5 and 0.25.
 pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(i64, PathBuf)>, Wrong> {
     let split = |path: PathBuf| {
         let inner = path.file_name()?.to_str()?.strip_prefix(before)?;
@@ -84,6 +84,17 @@ pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(
     if let Some(pair) = found.windows(2).find(|pair| pair[0].1 == pair[1].1) {
         let [one, other] = [&pair[0].2, &pair[1].2].map(|path| name_of(path));
         return Err((format!("has two files of one number, {one} and {other}; expected one"), None));
+    }
+    let length = |(stem, _, path): &(String, i64, PathBuf)| {
+        let head = format!("{before}{stem}");
+        let is_whole = head.strip_suffix('.').is_some_and(|whole| whole.ends_with(|c: char| c.is_ascii_digit()));
+        is_whole.then(|| name_of(path).len())
+    };
+    let lengths: Vec<_> = found.iter().filter_map(length).collect();
+    if lengths.windows(2).any(|pair| pair[0] != pair[1]) {
+        let [one, other] = [0, found.len() - 1].map(|at| name_of(&found[at].2));
+        let message = format!("has numbers with decimal points, from {one} to {other}; expected whole numbers");
+        return Err((message, Some("number the files in their order".to_owned())));
     }
     Ok(found.into_iter().map(|(_, number, path)| (number, path)).collect())
 }

@@ -10,6 +10,9 @@ use crate::sim::{Body, Dimension, State};
 use glam::DVec3;
 use std::sync::Arc;
 
+/// Longer bodies are rarely meant to be that long (m).
+pub(super) const LONG: f64 = 50.0;
+
 /// A body that hardly carries its own weight.
 struct Soft<'a> {
     run: usize,
@@ -23,26 +26,33 @@ struct Soft<'a> {
 }
 
 impl Scene {
-    /// The message and remedy for a run whose recording is of another size than the bodies that other runs simulate.
+    /// The message and remedy for a run whose recording is of another size than the bodies that other runs simulate or, without these,
+    /// than its own at rest, or is very long.
     pub(super) fn misfits(&self, number: usize) -> Option<[String; 2]> {
         /// The least ratio. Units of length differ by 100 or 1000.
         const FAR: f64 = 100.0;
         let of_rest = |run: &Run| run.bodies.bodies().iter().map(|body| longest(body.rest())).fold(0.0, f64::max);
         let simulated = self.runs.iter().filter(|run| run.recording.is_none()).map(of_rest).fold(0.0, f64::max);
-        let run = self.runs.get(number).filter(|run| run.recording.is_some() && simulated > 0.0)?;
+        let run = self.runs.get(number).filter(|run| run.recording.is_some())?;
         let of_body = |body| longest(&run.initial.position[run.bodies.nodes(body)]);
         let recorded = (0..run.of.len()).map(of_body).fold(0.0, f64::max);
-        let ratio = recorded / simulated;
-        if recorded == 0.0 || (1.0 / FAR..FAR).contains(&ratio) {
-            return None;
+        let (expected, whose) =
+            if simulated > 0.0 { (simulated, "the simulated bodies") } else { (of_rest(run), "its body at rest") };
+        let (name, ratio) = (quoted(&run.name), recorded / expected);
+        if recorded > 0.0 && expected > 0.0 && !(1.0 / FAR..FAR).contains(&ratio) {
+            let [times, recorded, expected] = [rounded(ratio, 2), recorded, expected].map(short);
+            let message = format!(
+                "the recording of {name} is {times} times as long as {whose}: {recorded} m beside {expected} m"
+            );
+            let scale = short(libm::exp10(-libm::round(libm::log10(ratio))));
+            let help = format!("lengths are in metres: write scale = {scale} in this run if its unit is another one");
+            return Some([message, help]);
         }
-        let name = quoted(&run.name);
-        let [times, recorded, simulated] = [rounded(ratio, 2), recorded, simulated].map(short);
-        let message = format!(
-            "the recording of {name} is {times} times as long as the simulated bodies: {recorded} m beside {simulated} m"
-        );
-        let scale = short(libm::exp10(-libm::round(libm::log10(ratio))));
-        Some([message, format!("lengths are in metres: write scale = {scale} in this run if its unit is another one")])
+        (recorded >= LONG).then(|| {
+            let message = format!("the recording of {name} is {} m long, as no `scale` is given", short(recorded));
+            let help = "write scale = 0.001 in this run if its unit is the millimetre, scale = 1 if it is the metre";
+            [message, help.to_owned()]
+        })
     }
 
     /// The message for the bodies that their own weight flattens or draws out, the remedy for the softest one, and its run.

@@ -60,7 +60,10 @@ impl Sequence {
             )),
             1 => None,
             _ if is_displaced => Some((
-                "has points that do not move, to which their array `displacement` or `U` is added".to_owned(),
+                format!(
+                    "has points that do not move, to which their array `displacement` or `U` is added{}",
+                    first.still.as_ref().map_or_else(String::new, |name| format!("; {name} has none, and stays"))
+                ),
                 "give the array another name if it is no displacement",
             )),
             moments if !moves => Some((
@@ -198,8 +201,10 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
     };
     // The folder of a scene may have no name.
     let within = if within.as_os_str().is_empty() { Path::new(".") } else { within };
-    let found = beside::numbered(within, before, after)
-        .map_err(|(message, _)| Flaw::new("", message).with_help("write more of the name before the star"))?;
+    let found = beside::numbered(within, before, after).map_err(|(message, help)| {
+        let help = help.map(|help| format!("{help}, or list them with their times in a .pvd file"));
+        Flaw::new("", message).with_help(help.as_deref().unwrap_or("write more of the name before the star"))
+    })?;
     let Some(&(first, _)) = found.first() else {
         let help = || "expected files with numbers in place of the star, such as frame_00000.obj".to_owned();
         let help = beside::backslash(Path::new(pattern)).unwrap_or_else(help);
@@ -222,6 +227,8 @@ struct ReadMoment {
     is_surface: bool,
     /// Whether triangles share points only where these are equal.
     is_welded: bool,
+    /// A file without displacements beside others that have them.
+    still: Option<String>,
 }
 
 impl ReadMoment {
@@ -280,6 +287,11 @@ impl ReadMoment {
         if self.cells.points.is_empty() {
             self.cells = cells;
         } else if !cells.points.is_empty() {
+            match [&self.cells, &cells].map(|cells| cells.displacements.is_some()) {
+                [true, false] => self.still = Some(name),
+                [false, true] => self.still = Some(self.name.clone()),
+                _ => {}
+            }
             append(&mut self.cells, cells);
         }
         Ok(())
@@ -346,30 +358,48 @@ impl ReadMoment {
     }
 }
 
-/// Appends the points and cells of another file.
+/// Appends the points and cells of another file. Velocities are kept if both have them; points without displacements stay.
 fn append(all: &mut Cells, other: Cells) {
-    all.corners.append(&other.corners, all.points.len() as u32);
-    all.copies.append(&other.copies, all.points.len() as u32);
+    let counts = [&*all, &other].map(|cells| cells.points.len());
+    all.corners.append(&other.corners, counts[0] as u32);
+    all.copies.append(&other.copies, counts[0] as u32);
     all.notes.extend(other.notes);
     all.kinds.extend(other.kinds);
     all.points.extend(other.points);
-    let vectors = [(&mut all.velocities, other.velocities), (&mut all.displacements, other.displacements)];
-    for (all, other) in vectors {
-        match (&mut *all, other) {
-            (Some(all), Some(other)) => all.extend(other),
-            _ => *all = None,
-        }
+    all.velocities = all.velocities.take().zip(other.velocities).map(|(all, other)| [all, other].concat());
+    let still = |count: usize| vec![DVec3::ZERO; count];
+    if all.displacements.is_some() || other.displacements.is_some() {
+        let own = all.displacements.take().unwrap_or_else(|| still(counts[0]));
+        all.displacements = Some([own, other.displacements.unwrap_or_else(|| still(counts[1]))].concat());
     }
 }
 
-/// Whether the points of all moments are those of the first.
+/// Whether the points of all moments are those of the first, to round-off of numbers in single precision, beside which their
+/// displacements are large.
 fn is_at_rest(moments: &[Listed], first: &ReadMoment, limits: &Limits) -> Result<bool, Flaw> {
+    /// The greatest move of a point, as a share of the largest coordinate and as one of the greatest change of a displacement.
+    const STILL: [f64; 2] = [1e-6, 1e-2];
+    let far = first.cells.points.iter().fold(0.0, |far: f64, point| far.max(point.abs().max_element()));
+    let (mut moved, mut displaced) = (0.0, 0.0);
     for listed in &moments[1..] {
-        if ReadMoment::read(listed, limits)?.cells.points != first.cells.points {
+        let cells = ReadMoment::read(listed, limits)?.cells;
+        if cells.points.len() != first.cells.points.len() {
+            return Ok(false);
+        }
+        moved = largest_change(&cells.points, &first.cells.points).max(moved);
+        if let (Some(now), Some(before)) = (&cells.displacements, &first.cells.displacements) {
+            displaced = largest_change(now, before).max(displaced);
+        }
+        if moved > STILL[0] * far {
             return Ok(false);
         }
     }
-    Ok(moments.len() > 1)
+    Ok(moments.len() > 1 && moved <= STILL[1] * displaced)
+}
+
+/// The greatest distance between vectors at one place in two lists.
+fn largest_change(now: &[DVec3], before: &[DVec3]) -> f64 {
+    now.iter().zip(before).map(|(now, before)| now.distance(*before)).fold(0.0, f64::max)
 }
 
 /// The number in a comment in the head of a file.

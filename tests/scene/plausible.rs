@@ -102,20 +102,26 @@ states = 'played.npz'
 name = 'Simulated'
 model = { kind = 'shape-based', stiffness = 1e4 }
 ";
-    let told = |unit: f64| {
+    let played = |scene: &str, unit: f64| {
         let square = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0].map(|at| at * unit);
         let arrays = [doubles("time", "(2,)", &[0.0, 1.0]), doubles("position", "(2, 4, 2)", &square.repeat(2))];
         let (_folder, scene) = load(scene, &stored(&arrays));
         let warnings = scene.unwrap_or_else(|error| panic!("{error}")).warnings;
         warnings.into_iter().map(|told| (told.line, told.message, told.help.unwrap_or_default())).collect::<Vec<_>>()
     };
-    assert_eq!([1.0, 50.0, 0.02].map(|unit| told(unit).len()), [0; 3]);
+    let told = |unit: f64| played(scene, unit);
+    assert_eq!([1.0, 20.0, 0.02].map(|unit| told(unit).len()), [0; 3]);
     let message = "the recording of \"Played\" is 1000 times as long as the simulated bodies: 1000 m beside 1 m";
     let help = "lengths are in metres: write scale = 0.001 in this run if its unit is another one";
     assert_eq!(told(1000.0), [(8, message.to_owned(), help.to_owned())]);
     let message = "the recording of \"Played\" is 0.001 times as long as the simulated bodies: 0.001 m beside 1 m";
     assert_eq!(told(0.001)[0].1, message);
     assert!(told(0.001)[0].2.contains("scale = 1000 "));
+    // Nothing is simulated.
+    let alone = scene.split("[[run]]\nname = 'Simulated'").next().unwrap_or_default();
+    assert_eq!([1.0, 0.02].map(|unit| played(alone, unit).len()), [0; 2]);
+    let message = "the recording of \"Played\" is 1000 times as long as its body at rest: 1000 m beside 1 m";
+    assert_eq!(played(alone, 1000.0), [(8, message.to_owned(), help.to_owned())]);
 }
 
 #[test]

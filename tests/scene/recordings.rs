@@ -624,6 +624,22 @@ fn surfaces_of_every_format_and_negative_numbers_are_sequences() {
     }
 }
 
+/// Sorted by the digits behind the point, 0.5 would come before 0.25.
+#[test]
+fn times_in_names_are_no_numbers_of_files() {
+    let of = |names: [&str; 3], pattern: &str| {
+        let files: Vec<_> = names.iter().zip([0.0, 1.0, 2.0]).map(|(name, x)| (*name, surface("obj", x))).collect();
+        let files: Vec<_> = files.iter().map(|(name, bytes)| (*name, &bytes[..])).collect();
+        load_sequence(&files, "lattice = { cells = [1, 1, 1], side = 1 }", pattern, &Limits::default())
+    };
+    for pattern in ["t_*.obj", "t_0.*.obj"] {
+        let error = of(["t_0.25.obj", "t_0.5.obj", "t_0.75.obj"], pattern).expect_err("times").to_string();
+        assert!(error.contains("has numbers with decimal points, from t_0.5.obj to t_0.75.obj"), "{error}");
+        assert!(error.contains("number the files in their order, or list them with their times in a .pvd"), "{error}");
+    }
+    of(["t_v2.08.obj", "t_v2.09.obj", "t_v2.10.obj"], "t_*.obj").expect("versions before numbers of one length");
+}
+
 /// The cells of `.mesh` and `.inp` files are elements, not surfaces.
 #[test]
 fn sequences_of_cells_of_medit_and_abaqus_are_bodies_of_cells() {
@@ -693,6 +709,31 @@ fn displacements_of_points_at_rest_are_added_and_told() {
         let told = "`m*.vtu` has points that do not move, to which their array `displacement` or `U` is added";
         assert_eq!(warnings(&scene), told);
     }
+    // Points that are written anew with single precision are at rest, too.
+    let files = [0.0, 1e-7, 3e-7].map(|by| {
+        let text = String::from_utf8(with_data("U", 3, 1e6 * by)).unwrap();
+        text.replace("'3' format='ascii'>0 0 0 1", &format!("'3' format='ascii'>{by} 0 0 1")).into_bytes()
+    });
+    let scene = of_sequence(&[("m0.vtu", &files[0]), ("m1.vtu", &files[1]), ("m2.vtu", &files[2])], "m*.vtu");
+    assert!(course(&scene, 3)[2] > 0.29 && warnings(&scene).contains("to which their array"), "{}", warnings(&scene));
+    // A tool that has no displacements beside a body that has them.
+    let (one, other, tool) = (with_data("U", 3, 0.0), with_data("U", 3, 0.5), tetrahedron(10, 7.0));
+    let parts = [
+        (0.0, "a.vtu", "part='0'"),
+        (0.0, "t.vtu", "part='1'"),
+        (0.1, "b.vtu", "part='0'"),
+        (0.1, "t.vtu", "part='1'"),
+    ];
+    let files = [("a.vtu", &one[..]), ("b.vtu", &other), ("t.vtu", &tool), ("l.pvd", &list(&parts))];
+    let scene = of_sequence(&files, "l.pvd");
+    assert_eq!(course(&scene, 2), [0.0, 0.5]);
+    assert!(warnings(&scene).contains("is added; t.vtu has none, and stays"), "{}", warnings(&scene));
+    // A body of millimetres.
+    let long = String::from_utf8(tetrahedron(10, 0.0))
+        .unwrap()
+        .replace("0 0 0 1 0 0 0 1 0 0 0 1", "0 0 0 90 0 0 0 90 0 0 0 90");
+    let scene = of_sequence(&[("m0.vtu", long.as_bytes())], "m*.vtu");
+    assert!(warnings(&scene).ends_with("is 90 m long, as no `scale` is given"), "{}", warnings(&scene));
     // What cannot be applied is told.
     for scene in [of("temperature", 1), of("u", 1)] {
         assert_eq!(course(&scene, 3), [0.0; 3]);

@@ -64,7 +64,8 @@ impl Archive {
             [start, ..] if start > 0.0 => {
                 let message =
                     format!("is {start}: the recording begins at {start} s; expected the start of the scene, 0 s");
-                return Err(Flaw::new(format!("{name}[0]"), message));
+                let help = format!("subtract {start} from all its times, or add the moment at 0 s");
+                return Err(Flaw::new(format!("{name}[0]"), message).with_help(help));
             }
             [.., end] if end < 0.0 => {
                 return Err(Flaw::new(name, format!("ends at {end} s, before the start of the scene, 0 s")));

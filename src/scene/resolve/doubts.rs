@@ -7,6 +7,7 @@ use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, ends, quoted, short};
 use crate::scene::file::{MotionPath, SceneFile, ShapeFile};
 use crate::scene::mesh::longest;
+use crate::scene::plausible::LONG;
 use crate::scene::{Run, Scene, SceneBody};
 use std::f64::consts::TAU;
 
@@ -200,8 +201,6 @@ fn warn_of_braked_rotation(scene: &Scene, report: &mut Collector<'_>) {
 
 /// Warns of sizes far from metres, unless a `scale` is given, and of recordings of another size.
 fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
-    /// Longer bodies are rarely meant to be that long (m).
-    const LONG: f64 = 50.0;
     let length = |SceneBody { body, .. }: &SceneBody| longest(body.carried().map_or(body.rest(), |fine| &fine.rest));
     let sizes = scene.bodies.iter().map(length).zip(typed.file.body.iter().flatten()).enumerate();
     let long: Vec<_> = sizes.filter(|(_, (length, file))| *length >= LONG && file.scale.is_none()).collect();
