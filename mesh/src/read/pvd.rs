@@ -1,7 +1,7 @@
 //! VTK's files that list other files: ParaView's files over time (`.pvd`), and the pieces of a grid (`.pvtu`, `.pvtp`).
 
 use super::ReadError;
-use super::source::{DAMAGED, Source, quoted};
+use super::source::{DAMAGED, Source, comma, quoted};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -27,7 +27,7 @@ pub fn read_list(bytes: &[u8]) -> Result<Vec<Listed>, ReadError> {
         let number = time.trim().parse().ok().filter(|time: &f64| time.is_finite());
         let time = number.ok_or_else(|| {
             let message = format!("has the time {} {}; expected a number (s)", quoted(time.as_bytes()), place());
-            ReadError::new(message, DAMAGED)
+            ReadError::new(message, comma(time.trim().as_bytes()).unwrap_or_else(|| DAMAGED.to_owned()))
         })?;
         Ok(Listed { time, file, part: attribute(tag, "part")? })
     })?;

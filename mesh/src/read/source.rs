@@ -5,7 +5,7 @@ mod words;
 
 use super::ReadError;
 pub(super) use numbers::Scalar;
-pub(super) use words::{integer, quoted};
+pub(super) use words::{comma, integer, quoted};
 
 /// The remedy for a file that ends early.
 pub(super) const CUT: &str = "the file is incomplete: copy, download or write it again";

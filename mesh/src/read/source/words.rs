@@ -8,7 +8,7 @@ pub(super) fn real(word: &[u8]) -> Option<f64> {
 }
 
 /// What to do about a number with a comma.
-pub(super) fn comma(word: &[u8]) -> Option<String> {
+pub(in crate::read) fn comma(word: &[u8]) -> Option<String> {
     let word = std::str::from_utf8(word).ok().filter(|word| word.contains(','))?;
     let point = word.replacen(',', ".", 1);
     let is_number = |text: &str| text.is_empty() || text.parse::<f64>().is_ok();

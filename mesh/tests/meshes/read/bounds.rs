@@ -101,6 +101,9 @@ fn formats_that_are_not_read_have_converters() {
         ("bdf", "meshio"),
         ("unv", "gmsh FILE -save"),
         ("vti", "ParaView"),
+        ("frd", "ccx2paraview"),
+        ("odb", "program that made it"),
+        ("smesh", "tetgen -p"),
         ("sldprt", "program that made it"),
     ] {
         assert!(converter(ending).is_some_and(|help| help.contains(tool)), "{ending}");

@@ -33,6 +33,10 @@ fn mistakes_are_told_with_their_places() {
         let error = list(sets).unwrap_err();
         assert!(error.contains(message), "{sets}: {error}");
     }
+    let of_commas =
+        r#"<VTKFile type="Collection"><Collection><DataSet timestep="0,5" file="a.vtu"/></Collection></VTKFile>"#;
+    let help = read_list(of_commas.as_bytes()).unwrap_err().help;
+    assert_eq!(help.as_deref(), Some("write a decimal point, not a comma: 0.5"));
     assert!(read_list(b"").unwrap_err().message.contains("no `<VTKFile>`"));
     assert!(read_list(b"<VTKFile type='UnstructuredGrid'/>").unwrap_err().message.contains("expected `Collection`"));
 }
