@@ -43,6 +43,9 @@ pub struct PlotOf {
     pub plot: Measure,
     /// Of what: the name of an obstacle, of a body or of a probe, or a place in the scene such as `"hold[0]"`, `"grab[0]"` and `"obstacle[0]"`.
     pub of: String,
+    /// The body, one of several, on which a force or a torque acts. Default: all bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
     /// Whose displacement is the axis to the right: a probe, a hold, a grab or an obstacle. Its mean over nodes counts, along the direction.
     /// Default: the axis is that of time.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -57,7 +60,7 @@ pub struct PlotOf {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Measure {
-    /// The mean force on all bodies (N), in the last interval between rows, or else frames.
+    /// The mean force on bodies (N), in the last interval between rows, or else frames.
     Force,
     /// Its torque about the origin (N m).
     Torque,
@@ -131,7 +134,13 @@ impl Plot {
 impl PlotOf {
     /// A quantity of a thing with a name, over time, as a magnitude.
     pub fn new(plot: Measure, of: impl Into<String>) -> Self {
-        Self { plot, of: of.into(), against: None, along: None }
+        Self { plot, of: of.into(), on: None, against: None, along: None }
+    }
+
+    /// The same on one of several bodies.
+    #[must_use]
+    pub fn on(self, body: impl Into<String>) -> Self {
+        Self { on: Some(body.into()), ..self }
     }
 
     /// The same against the displacement of a thing.

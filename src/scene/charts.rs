@@ -78,12 +78,20 @@ impl Scene {
     fn check_plot(&self, of: &PlotOf, path: &[PathPart<'_>], report: &mut Collector<'_>) {
         let (exerting, moving) = (self.exerting(), self.moving());
         let measured = if of.plot == Measure::Displacement { &moving } else { &exerting };
-        let named = [("of", Some(&of.of), measured), ("against", of.against.as_ref(), &moving)];
+        let is_other = |name: &&str| of.plot != Measure::Displacement && *name != of.of;
+        let bodies = self.bodies.iter().filter(|_| self.bodies.len() > 1).map(|body| body.name.as_str());
+        let others = bodies.filter(is_other).collect();
+        let named = [
+            ("of", Some(&of.of), measured),
+            ("on", of.on.as_ref(), &others),
+            ("against", of.against.as_ref(), &moving),
+        ];
         for (key, name, known) in named.into_iter().filter_map(|(key, name, known)| Some((key, name?, known))) {
             if known.contains(&name.as_str()) {
                 continue;
             }
             let what = match (key, of.plot) {
+                ("on", _) => "one of several bodies on which a force or a torque acts",
                 ("of", Measure::Force | Measure::Torque) => "an obstacle, a hold, a grab or one of several bodies",
                 _ => "a probe, a hold, a grab or an obstacle",
             };

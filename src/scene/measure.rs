@@ -34,6 +34,8 @@ pub struct Reading {
 pub(crate) struct Meter<'a> {
     plot: Measure,
     exerting: Vec<Source>,
+    /// The only body of the run on which it is exerted.
+    on: Option<usize>,
     moved: Option<Moved<'a>>,
     against: Option<Moved<'a>>,
     along: Option<DVec3>,
@@ -62,9 +64,13 @@ impl Moved<'_> {
 impl<'a> Meter<'a> {
     /// A meter for a chart of a run of a scene.
     pub(crate) fn new(scene: &'a Scene, run: &Run, of: &PlotOf) -> Self {
+        let named = |name: &String| run.of.iter().position(|&body| scene.bodies[body].name == *name);
+        let on = of.on.as_ref().map(named);
         Self {
             plot: of.plot,
-            exerting: scene.sources(run, &of.of),
+            // A run without the body has no such force.
+            exerting: if on == Some(None) { Vec::new() } else { scene.sources(run, &of.of) },
+            on: on.flatten(),
             moved: scene.moved(run, &of.of),
             against: of.against.as_ref().and_then(|name| scene.moved(run, name)),
             along: scene.along(of),
@@ -78,7 +84,7 @@ impl<'a> Meter<'a> {
         let all: Vec<f64> = match self.plot {
             Measure::Displacement => ways(&self.moved).into_iter().map(size).collect(),
             force => {
-                let [exerted, torque] = exerted(&self.exerting, forces, None);
+                let [exerted, torque] = exerted(&self.exerting, forces, self.on);
                 vec![size(if force == Measure::Force { exerted } else { torque })]
             }
         };
@@ -170,22 +176,25 @@ impl Scene {
         [mean.x, mean.y, mean.z, lengths().sum::<f64>() / ways.len() as f64, least, most]
     }
 
-    /// Magnitudes of single things by their names: of forces and torques, if they are known, and of displacements of probes, in all bodies of a run.
+    /// Magnitudes of single things by their names: of forces and torques on all bodies of a run and between each two of them, if they are
+    /// known, and of displacements of probes, in all bodies of a run.
     pub(crate) fn magnitudes(&self, run: &Run, forces: &[Reaction], displaced: &[[f64; 6]]) -> Vec<(String, f64)> {
-        let names = self.exerting().into_iter().filter(|_| !forces.is_empty());
-        let of_source = |name: &str| {
-            let sums = exerted(&self.sources(run, name), forces, None).map(DVec3::length);
-            ["force", "torque"]
-                .into_iter()
-                .zip(sums)
-                .map(|(key, sum)| (format!("{key} of {name}"), sum))
-                .collect::<Vec<_>>()
+        let of_source = |(name, on): (String, Option<usize>)| {
+            let whole = on.map_or_else(|| name.clone(), |on| format!("{name} on {}", self.bodies[run.of[on]].name));
+            let sums = exerted(&self.sources(run, &name), forces, on).map(DVec3::length);
+            let named = |(key, sum)| (format!("{key} of {whole}"), sum);
+            ["force", "torque"].into_iter().zip(sums).map(named).collect::<Vec<_>>()
         };
+        let things = self.exerting().into_iter().map(|name| (name.to_owned(), None));
+        // Forces of two bodies on each other are opposite.
+        let name = |at: usize| self.bodies[run.of[at]].name.clone();
+        let pairs = (0..run.of.len()).flat_map(|on| (0..on).map(move |from| (name(from), Some(on))));
+        let all = things.chain(pairs).filter(|_| !forces.is_empty());
         let of_probe = |(probe, displaced): (&Probe, &[f64; 6])| {
             let sizes = SIZES.into_iter().zip(&displaced[3..]);
             sizes.map(|(key, &size)| (format!("displacement of {}_{key}", probe.name), size)).collect::<Vec<_>>()
         };
-        names.flat_map(of_source).chain(self.probes.iter().zip(displaced).flat_map(of_probe)).collect()
+        all.flat_map(of_source).chain(self.probes.iter().zip(displaced).flat_map(of_probe)).collect()
     }
 
     /// The displacements of all probes, in all bodies of a run together and, if there are several, in each.

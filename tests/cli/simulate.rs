@@ -728,6 +728,8 @@ fn forces_of_contact_are_columns() {
         }
     }
     assert!(most > 5.0, "they met: {most}");
+    let peak = &place.json("output/told/run.json")["runs"][0]["greatest"]["force of low on high"]["value"];
+    assert!(peak.as_f64().expect("a peak of the pair") >= most, "{peak}");
 }
 
 /// A hold carries weight and load once the body rests, and energy without work is what damping has taken.

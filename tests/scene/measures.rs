@@ -42,6 +42,10 @@ fn charts_name_things_that_are_there() {
         "1:58 `view.charts[0].along` has 2 coordinates; expected 3",
     );
     case("{ plot = 'force', of = 'hold[0]', along = [0, 0, 0] }", "1:58 is zero, so it has no direction");
+    case(
+        "{ plot = 'force', of = 'hold[0]', on = 'a' }",
+        "1:55 is \"a\"; expected one of several bodies on which a force or a torque acts; there is none",
+    );
     case("{ plot = 'weight', of = 'hold[0]' }", "1:25 expected \"force\", \"torque\" or \"displacement\"");
     case("'hold_forc'", "1:16 did you mean \"hold_force\"?");
     let twice = "{ plot = 'force', of = 'hold[0]' }, { plot = 'force', of = 'hold[0]' }";
@@ -78,6 +82,32 @@ fn what_is_measured_is_what_happens() {
     assert!(pull[at].value > 5.0 && (pull[at].value - hold[at].value).abs() < 0.1 * pull[at].value, "{:?}", hold[at]);
     assert!((hold[at].value - size[at].value).abs() < 1e-3 * size[at].value, "{:?}", size[at]);
     assert!(pull[0].value.is_nan(), "before the first interval");
+}
+
+/// Of two boxes on a floor, the upper one presses on the lower one with its weight, and the floor carries both.
+#[test]
+fn forces_between_two_bodies_are_charts() {
+    let scene = "gravity = [0, -10, 0]\ntime = { duration = 1, frames_per_second = 10, step = 1e-3 }\nmass_damping = 20\n\
+                 body = [{ name = 'low', lattice = { cells = [2, 1, 2], side = 0.1 }, density = 100, lowest = 1e-3 },\n\
+                 { name = 'high', lattice = { cells = [1, 1, 1], side = 0.1 }, density = 100, lowest = 0.102 }]\n\
+                 run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]\n\
+                 obstacle = [{ kind = 'floor', name = 'ground' }]\n";
+    let last = |of: &str, on: &str| {
+        let chart = format!("{{ plot = 'force', of = '{of}', on = '{on}', along = [0, 1, 0] }}");
+        let scene = good(&format!("{scene}view.charts = [{chart}]\n"));
+        History::for_pictures(&scene, &[0]).series.remove(0).readings[0].last().expect("readings").value
+    };
+    for (of, on, force) in
+        [("high", "low", -1.0), ("low", "high", 1.0), ("ground", "low", 5.0), ("ground", "high", 0.0)]
+    {
+        assert!((last(of, on) - force).abs() < 0.05, "{of} on {on}: {}", last(of, on));
+    }
+    let wrong = |chart: &str, words: &str| expect(&bad(&format!("{scene}view.charts = [{chart}]")), 7, words);
+    wrong(
+        "{ plot = 'force', of = 'low', on = 'low' }",
+        "1:51 expected one of several bodies on which a force or a torque acts: \"high\"",
+    );
+    wrong("{ plot = 'displacement', of = 'ground', on = 'low' }", "1:61 a force or a torque acts; there is none");
 }
 
 #[test]
