@@ -56,7 +56,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
 
 /// The next line that is neither empty nor a comment.
 fn line<'b>(source: &mut Source<'b>) -> Option<Source<'b>> {
-    std::iter::from_fn(|| source.next_line(0)).find(|line| !line.rest().starts_with(b"**"))
+    std::iter::from_fn(|| source.next_line()).find(|line| !line.rest().starts_with(b"**"))
 }
 
 /// The next line of data, before the next keyword.
@@ -197,7 +197,7 @@ impl Reader<'_, '_> {
                     cells.kinds[before] == cells.kinds[new] && cells.corners[before] == cells.corners[new]
                 };
                 if before.is_some_and(|before| !is_equal(before)) {
-                    return Err(tags::twice("element", number, "another one", last.place(last.at)));
+                    return Err(tags::twice("element", number, "", last.place(last.at)));
                 }
                 self.tags[ELEMENTS].push(number, new as u32);
                 tag = None;

@@ -123,9 +123,7 @@ impl<'l> Builder<'l> {
         if source.coding == Coding::Text {
             if !source.is_done() {
                 let place = source.place(source.at);
-                self.cells
-                    .notes
-                    .push(format!("has more than its header counts, from what is {place} on, which is not read"));
+                self.cells.notes.push(format!("has more than its header counts, which begins {place} and is not read"));
             }
         // Files may end with zeros or with the end of a line.
         } else if source.rest().iter().any(|byte| !byte.is_ascii_whitespace() && *byte != 0) {

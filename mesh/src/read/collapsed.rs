@@ -58,25 +58,27 @@ pub(super) fn simpler(
     }
 }
 
-/// The tetrahedra between a corner and the faces that do not have it, by the first corner from which all are on the inner side.
+/// The tetrahedra between a corner and the faces that do not have it, by the first corner from which all are on the inner side, and that
+/// have all corners of the cell if possible.
 fn tetrahedra(faces: &[Vec<u32>], different: &[u32], points: &[DVec3]) -> Vec<(ElementKind, Vec<u32>)> {
     let at = |point: u32| points[point as usize];
-    let from = |&apex: &u32| {
+    let six = |[a, b, c, d]: &[u32; 4]| (at(*b) - at(*a)).cross(at(*c) - at(*a)).dot(at(*d) - at(*a));
+    // Quadrilaterals are divided at their lowest corner, as those of the next cell are, or else at the one after it.
+    let from = |(&apex, turn): (&u32, usize)| {
         let mut all = Vec::new();
         for face in faces.iter().filter(|face| !face.contains(&apex)) {
-            // Quadrilaterals are divided at their lowest corner, as those of the next cell are.
             let first = (0..face.len()).min_by_key(|&place| face[place]).unwrap_or(0);
-            let corner = |place: usize| face[(first + place) % face.len()];
+            let corner = |place: usize| face[(first + turn + place) % face.len()];
             all.extend((2..face.len()).map(|place| [corner(0), corner(place - 1), corner(place), apex]));
         }
-        let six = |[a, b, c, d]: &[u32; 4]| (at(*b) - at(*a)).cross(at(*c) - at(*a)).dot(at(*d) - at(*a));
-        let volumes: Vec<f64> = all.iter().map(six).collect();
-        let size = volumes.iter().map(|volume| volume.abs()).sum::<f64>();
-        let is_thick = |volume: &f64| volume.abs() > super::order::FLAT * size;
-        let is_inner = |sign: f64| volumes.iter().filter(|volume| is_thick(volume)).all(|volume| volume * sign > 0.0);
-        let thick = all.iter().zip(&volumes).filter(|(_, volume)| is_thick(volume));
-        let cells = thick.map(|(cell, _)| (ElementKind::Tetrahedron, cell.to_vec())).collect();
-        (is_inner(1.0) || is_inner(-1.0)).then_some(cells)
+        let size = all.iter().map(|cell| six(cell).abs()).sum::<f64>();
+        all.retain(|cell| six(cell).abs() > super::order::FLAT * size);
+        let is_inner = |sign: f64| all.iter().all(|cell| six(cell) * sign > 0.0);
+        (is_inner(1.0) || is_inner(-1.0)).then_some(all)
     };
-    different.iter().find_map(from).unwrap_or_default()
+    let ways = [0, 1].into_iter().flat_map(|turn| different.iter().map(move |apex| (apex, turn)));
+    let found: Vec<_> = ways.filter_map(from).collect();
+    let has_all = |cells: &&Vec<[u32; 4]>| different.iter().all(|corner| cells.as_flattened().contains(corner));
+    let cells = found.iter().find(has_all).or(found.first());
+    cells.into_iter().flatten().map(|cell| (ElementKind::Tetrahedron, cell.to_vec())).collect()
 }

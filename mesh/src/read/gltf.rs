@@ -23,8 +23,14 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, beside: &mut Beside<'_>) -> Re
     let nodes = scene.place(&document, &is_hidden)?;
     nodes.iter().try_for_each(|node| scene.add(node))?;
     if scene.builder.is_empty() {
-        let message = "shows nothing: no node of its scene has a mesh of triangles";
-        return Err(ReadError::new(message, "make the scene with meshes the default `scene`, or export it again"));
+        let (message, help) = match scene.builder.cells.notes.is_empty() {
+            true => (
+                "no node of its scene has a mesh of triangles",
+                "make the scene with meshes the default `scene`, or export it again",
+            ),
+            false => ("its meshes are hidden (KHR_node_visibility)", "make them visible, and export it again"),
+        };
+        return Err(ReadError::new(format!("shows nothing: {message}"), help));
     }
     scene.builder.finish(&Source::text(b""), 0)
 }

@@ -115,8 +115,9 @@ pub(super) fn known(faces: &[Vec<u32>], points: &[u32]) -> Option<(CellKind, Vec
 fn is_concave(faces: &[Vec<u32>], corners: &[u32], points: &[DVec3]) -> bool {
     /// The most points that are compared with faces: each with each.
     const MOST: usize = 1_000_000;
-    /// What is nearer to a face, as parts of the size of the cell and of its distance from the origin, is in it: single precision.
-    const NEAR: [f64; 2] = [1e-5, 1e-6];
+    /// What is nearer to a face, as a part of the size of the cell, is in it, as faces of four corners are rarely flat. The other is that of
+    /// its distance from the origin: single precision.
+    const NEAR: [f64; 2] = [1e-3, 1e-6];
     let places: Option<Vec<DVec3>> = corners.iter().map(|&corner| points.get(corner as usize).copied()).collect();
     let Some(places) = places.filter(|places| places.len().saturating_mul(faces.len()) <= MOST) else { return false };
     let (low, high) = bounds(&places);

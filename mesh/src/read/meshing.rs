@@ -120,7 +120,8 @@ impl Cells {
         if lost > 0 && !self.notes.iter().any(|note| note.starts_with(what)) {
             self.notes.push(format!("{what}: {lost}"));
         }
-        let groups = self.groups.iter().filter(|group| lost > 0 && group.points.iter().all(is_lost));
+        let is_gone = |points: &[u32]| !points.is_empty() && points.iter().all(is_lost);
+        let groups = self.groups.iter().filter(|group| is_gone(&group.points));
         let mut names: Vec<_> = groups.map(|group| quoted(group.name.as_bytes())).collect();
         if names.len() > MOST {
             names.truncate(MOST);

@@ -7,11 +7,12 @@ use super::{Cells, Limits, ReadError};
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
+    source.comment = Some(b'#');
     let mut builder = Builder::new(limits);
     let mut corners = Vec::new();
     // The first keyword that is not one of the format.
     let mut unknown = None;
-    while let Some(mut line) = source.next_line(b'#') {
+    while let Some(mut line) = source.next_line() {
         match line.word() {
             b"v" => {
                 let start = line.at;

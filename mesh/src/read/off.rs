@@ -7,7 +7,8 @@ use glam::DVec3;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
-    let mut header = source.next_line(b'#').ok_or_else(|| source.ends("`OFF`"))?;
+    source.comment = Some(b'#');
+    let mut header = source.next_line().ok_or_else(|| source.ends("`OFF`"))?;
     let mut word = header.word();
     // The number of points may follow without a space, as in the files of ModelNet: `OFF490 518 0`.
     if word.starts_with(b"OFF") {
@@ -26,9 +27,9 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         return Err(ReadError::new("is a binary OFF file; expected text", "write it as text, or as binary PLY"));
     }
     // The numbers are in the same line, or in the next.
-    let mut numbers = match header.is_done() || header.peek().starts_with(b"#") {
+    let mut numbers = match header.is_done() {
         false => header,
-        true => source.next_line(b'#').ok_or_else(|| source.ends("the number of points"))?,
+        true => source.next_line().ok_or_else(|| source.ends("the number of points"))?,
     };
     let points = numbers.count(Scalar::I64, "the number of points")?;
     let faces = numbers.count(Scalar::I64, "the number of faces")?;
@@ -40,13 +41,13 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         return builder.finish(&source, 0);
     }
     for at in 0..points {
-        let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
+        let mut line = source.next_line().ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
         let start = line.at;
         builder.point_at(line.point(Scalar::F64)?, start)?;
     }
     let mut corners = Vec::new();
     for at in 0..faces {
-        let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("face {} of {faces}", at + 1)))?;
+        let mut line = source.next_line().ok_or_else(|| source.ends(&format!("face {} of {faces}", at + 1)))?;
         corners.clear();
         for _ in 0..line.count(Scalar::I64, "the number of corners of a face")? {
             let start = line.at;
@@ -55,7 +56,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         }
         builder.face(&corners)?;
     }
-    if let Some(mut rest) = source.next_line(b'#') {
+    if let Some(mut rest) = source.next_line() {
         builder.tell_rest(&mut rest);
     }
     builder.finish(&source, 0)
@@ -76,8 +77,8 @@ impl Together {
             return None;
         }
         let mut source = rest.clone();
-        (source.at, source.comment) = (numbers.at, Some(b'#'));
-        if !numbers.clone().is_done() && !numbers.clone().peek().starts_with(b"#") {
+        source.at = numbers.at;
+        if !numbers.clone().is_done() {
             source.word();
         }
         let has = |letter: u8| u64::from(word.strip_suffix(b"OFF").is_some_and(|before| before.contains(&letter)));
@@ -90,7 +91,7 @@ impl Together {
         // Colours of faces end with their lines.
         let are_lines = lines(&source) >= faces;
         for _ in 0..faces {
-            let mut line = are_lines.then(|| source.next_line(b'#')).flatten();
+            let mut line = are_lines.then(|| source.next_line()).flatten();
             all.faces.push(face(line.as_mut().unwrap_or(&mut source), points)?);
         }
         source.is_done().then_some(all)
@@ -100,7 +101,7 @@ impl Together {
 /// The number of lines that are left.
 fn lines(source: &Source<'_>) -> u64 {
     let mut source = source.clone();
-    std::iter::from_fn(|| source.next_line(b'#')).count() as u64
+    std::iter::from_fn(|| source.next_line()).count() as u64
 }
 
 /// A face with some of so many points.

@@ -51,7 +51,7 @@ impl Parts {
                 return;
             }
         }
-        let before = self.cells.len();
+        let (before, turned) = (self.cells.len(), self.turned);
         if sorted.len() == cell.len() {
             self.push(kind, cell, points);
         } else if self.dimension == Dimension::Space {
@@ -59,6 +59,8 @@ impl Parts {
                 self.push(kind, &mut cell, points);
             }
             self.simpler += usize::from(self.cells.len() > before);
+            // Their own order says nothing about that of the file.
+            self.turned = turned;
         }
         if self.cells.len() == before {
             self.flat = (self.flat.0 + 1, if self.flat.0 == 0 { at } else { self.flat.1 });
@@ -118,12 +120,9 @@ impl Parts {
         points: &[DVec3],
     ) -> Result<(IndexLists, usize, Vec<String>), ReadError> {
         let mut notes = Vec::new();
-        match self.simpler {
-            0 => {}
-            1 => notes.push("has a cell that lists a corner more than once, which is read as a simpler one".to_owned()),
-            count => notes.push(format!(
-                "has {count} cells that list a corner more than once, which are read as simpler ones: wedges, pyramids, tetrahedra"
-            )),
+        if self.simpler > 0 {
+            let what = "has cells that list a corner more than once, which are read as wedges, pyramids and tetrahedra";
+            notes.push(format!("{what}: {}", self.simpler));
         }
         let (flat, first) = self.flat;
         if flat == 0 {

@@ -24,7 +24,7 @@ const CONVERTERS: [(&str, &str); 14] = [
         "odb op2 rst",
         "write its mesh as an Abaqus (`.inp`) or Gmsh (`.msh`) file, or its moments as `.vtu`, from the program that made it",
     ),
-    ("frd", "convert it with ccx2paraview: `ccx2paraview FILE.frd vtu`"),
+    ("frd", "convert it with ccx2paraview: `ccx2paraview FILE vtu`"),
     (
         "poly smesh",
         "mesh it with TetGen, `tetgen -p FILE`, and convert the result with meshio: `meshio convert FILE.1.node NEW.vtu`",

@@ -119,22 +119,20 @@ impl<'b> Source<'b> {
 
     /// The next line that is not empty and not a comment, with the lines that continue it. Nothing continues a comment: paths of folders
     /// end in backslashes, too.
-    pub(super) fn next_line(&mut self, comment: u8) -> Option<Self> {
-        while !self.is_done() {
-            let start = self.at;
-            let begins = |pair: &[u8]| is_space(pair[0]) && pair[1] == comment;
-            let is_comment = |line: &[u8]| line.first() == Some(&comment) || line.windows(2).any(begins);
-            loop {
-                let line = self.line();
-                if !(self.continues && line.ends_with(b"\\")) || is_comment(line) || self.at == self.end {
-                    break;
-                }
-            }
-            if self.bytes[start] != comment {
+    pub(super) fn next_line(&mut self) -> Option<Self> {
+        if self.is_done() {
+            return None;
+        }
+        let (start, comment) = (self.at, self.comment);
+        let begins = |pair: &[u8]| is_space(pair[0]) && Some(pair[1]) == comment;
+        let has_comment =
+            |line: &[u8]| comment.is_some() && line.first() == comment.as_ref() || line.windows(2).any(begins);
+        loop {
+            let line = self.line();
+            if !(self.continues && line.ends_with(b"\\")) || has_comment(line) || self.at == self.end {
                 return Some(Self { at: start, end: self.at, ..self.clone() });
             }
         }
-        None
     }
 
     /// The fields of a line between commas that are not blank, with their numbers.

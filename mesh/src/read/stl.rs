@@ -101,7 +101,7 @@ fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder<'_>) -> Res
         let message = format!("ends after {held} triangles; expected {count} by its binary header");
         return Err(ReadError::new(message, format!("{CUT}, or name it by its format if it is no STL file")));
     }
-    if (bytes.len() - HEAD) as u64 > TRIANGLE as u64 * count + TRIANGLE as u64 && count == 0 {
+    if count == 0 && bytes.len() - HEAD > TRIANGLE {
         return Err(ReadError::new("promises no triangles in its binary header, but has data after it", DAMAGED));
     }
     welder.builder.expect(0, count)?;

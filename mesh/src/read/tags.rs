@@ -56,7 +56,7 @@ impl Tags {
             return Ok(index);
         };
         let is_equal = !point.is_finite() || builder.cells.points.get(index as usize) == Some(&point);
-        if is_equal { Ok(index) } else { Err(twice("node", tag, "at another place", source.place(at))) }
+        if is_equal { Ok(index) } else { Err(twice("node", tag, ", at another place", source.place(at))) }
     }
 
     /// The index of a number that was found at a place.
@@ -69,6 +69,6 @@ impl Tags {
 
 /// The error of a number that was found at a place and has another meaning before.
 pub(super) fn twice(what: &str, tag: i64, how: &str, place: String) -> ReadError {
-    let message = format!("has {what} {tag} {place}, which is {how} before; expected each number once");
+    let message = format!("has {what} {tag} again {place}{how}; expected each number once");
     ReadError::new(message, format!("remove one of the two, or give each {what} a number of its own"))
 }

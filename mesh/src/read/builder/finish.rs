@@ -81,16 +81,9 @@ impl Builder<'_> {
             let note = "has cells of higher order, of which the corners are read: their edges become straight";
             self.cells.notes.push(note.to_owned());
         }
-        match self.concave {
-            0 => {}
-            1 => self
-                .cells
-                .notes
-                .push("has a polyhedron that is not convex, which becomes the hull of its points".to_owned()),
-            count => {
-                let note = format!("has {count} polyhedra that are not convex, which become the hulls of their points");
-                self.cells.notes.push(note);
-            }
+        if self.concave > 0 {
+            let what = "has polyhedra that are not convex, which become the hulls of their points";
+            self.cells.notes.push(format!("{what}: {}", self.concave));
         }
         // Some pieces may have none.
         self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);

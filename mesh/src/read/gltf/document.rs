@@ -105,7 +105,7 @@ fn is_hidden(node: &Value) -> bool {
 fn check_version(value: &Value) -> Result<(), ReadError> {
     let asset = |key: &str| value.get("asset").and_then(|asset| asset.get(key)).and_then(Value::as_str);
     let later = match (asset("version"), asset("minVersion")) {
-        (_, Some(least)) if least != "2.0" => least,
+        (_, Some(least)) if !matches!(least, "1.0" | "2.0") => least,
         (Some(version), _) if version.split('.').next() != Some("2") => version,
         _ => return Ok(()),
     };

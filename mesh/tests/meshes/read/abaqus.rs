@@ -232,13 +232,13 @@ fn numbers_of_abaqus_with_two_meanings_are_refused() {
     let text = format!("{NODES}*ELEMENT, TYPE=C3D4, ELSET=all\n{}\n", CELLS.join("\n"));
     let remedy = "(remove one of the two, or give each";
     let found = refusal(format!("{text}*NODE\n7, 2, 1, 9\n"), Format::Abaqus);
-    let expected = "has node 7 in line 18, which is at another place before; expected each number once";
+    let expected = "has node 7 again in line 18, at another place; expected each number once";
     assert_eq!(found, format!("{expected} {remedy} node a number of its own)"));
     let found = refusal(format!("{text}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 6\n"), Format::Abaqus);
-    let expected = "has element 1 in line 18, which is another one before; expected each number once";
+    let expected = "has element 1 again in line 18; expected each number once";
     assert_eq!(found, format!("{expected} {remedy} element a number of its own)"));
     let found = refusal(format!("{text}*ELEMENT, TYPE=S4\n2, 1, 3, 4, 7\n"), Format::Abaqus);
-    assert!(found.starts_with("has element 2 in line 18, which is another one before"), "{found}");
+    assert!(found.starts_with("has element 2 again in line 18"), "{found}");
     // The same again: cells before and behind it have the one node.
     let again =
         "*NODE, NSET=two\n7, 2, 1, 3\n2, 2, 0, 0\n*ELEMENT, TYPE=C3D4, ELSET=one\n1, 1, 2, 3, 7\n8, 2, 3, 7, 9\n";

@@ -16,12 +16,7 @@ fn file(kind: &str, cells: &[&str]) -> String {
 
 /// The note of so many cells.
 fn note(count: usize) -> String {
-    match count {
-        1 => "has a cell that lists a corner more than once, which is read as a simpler one".to_owned(),
-        _ => format!(
-            "has {count} cells that list a corner more than once, which are read as simpler ones: wedges, pyramids, tetrahedra"
-        ),
-    }
+    format!("has cells that list a corner more than once, which are read as wedges, pyramids and tetrahedra: {count}")
 }
 
 #[test]
@@ -42,7 +37,7 @@ fn hexahedra_and_wedges_with_repeated_corners_are_simpler_cells() {
     ] {
         let found = volume(file(kind, &[corners]), Format::Abaqus);
         assert_eq!((found.cells.len(), found.cells[0].len(), found.points.len()), (1, nodes, nodes), "{corners}");
-        assert_eq!((found.solids, &found.notes[..]), (Solids::Ordered, &[note(1)][..]), "{corners}");
+        assert_eq!((found.solids, found.turned, &found.notes[..]), (Solids::Ordered, 0, &[note(1)][..]), "{corners}");
         assert!((whole(&found) - expected).abs() < 1e-12, "{corners}: {}", whole(&found));
     }
     let found = volume(file("C3D8", &["1, 2, 3, 4, 5, 6, 7, 8", "2, 9, 3, 3, 6, 10, 7, 7"]), Format::Abaqus);
@@ -60,12 +55,18 @@ fn cells_that_are_of_no_kind_become_tetrahedra() {
         assert!(found.cells.iter().all(|cell| cell.len() == 4) && found.points.len() == points, "{text}");
         assert!(each(&found).iter().all(|&volume| volume > 0.0), "{text}");
         assert!((whole(&found) - expected).abs() < 1e-12, "{text}: {}", whole(&found));
-        assert_eq!(found.notes, [note(1)]);
+        assert_eq!((found.turned, found.notes), (0, vec![note(1)]));
     };
     // One edge is one corner: a roof over 4 × 1 with the height 2, of which a tetrahedron is cut off the front.
     let roof = "*NODE\n1, 0, 0, 0\n2, 4, 0, 0\n3, 4, 1, 0\n4, 0, 1, 0\n5, 1, 0, 1\n6, 3, 0, 1\n7, 2, 1, 2\n\
                 *ELEMENT, TYPE=C3D8\n1, 1, 2, 3, 4, 5, 6, 7, 7\n";
     check(roof, 7, 11.0 / 3.0);
+    // A wedge with a bent side, however its corners are numbered.
+    for [a, b, c, d, e] in [[1, 2, 3, 5, 6], [2, 3, 1, 5, 6]] {
+        let nodes = format!("{a}, 0, 0, 0\n{b}, 1, 0, 0\n{c}, 1, 1, 0\n{d}, 0, 0, 1\n{e}, 1, 0, 1\n");
+        let text = format!("*NODE\n{nodes}*ELEMENT, TYPE=C3D6\n1, {a}, {b}, {c}, {d}, {e}, {e}\n");
+        check(&text, 5, 1.0 / 3.0);
+    }
     // Two edges across each other are one corner each. The two quadrilaterals that are left are bent.
     check(&file("C3D8", &["1, 2, 3, 3, 5, 5, 7, 8"]), 6, 4.0);
 }

@@ -258,7 +258,7 @@ fn what_a_file_has_beyond_the_counts_of_its_header_is_told() {
         assert_eq!(surface([&binary[..], more].concat(), Format::Stl).notes, [""; 0]);
     }
     let more =
-        |place: usize| [format!("has more than its header counts, from what is in line {place} on, which is not read")];
+        |place: usize| [format!("has more than its header counts, which begins in line {place} and is not read")];
     let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     assert_eq!(surface(format!("{off}# a\n\n3 0 2 1\n"), Format::Off).notes, more(9));
     assert_eq!(surface(format!("{off}# a\n\n"), Format::Off).notes, [""; 0]);

@@ -125,8 +125,7 @@ fn numbers_of_gmsh_nodes_at_two_places_are_refused() {
     };
     for (text, line) in [(old("2 2 0 9"), 10), (new("2 2 0 9"), 16)] {
         let found = refusal(&text, Format::Gmsh);
-        let expected =
-            format!("has node 2 in line {line}, which is at another place before; expected each number once (");
+        let expected = format!("has node 2 again in line {line}, at another place; expected each number once (");
         assert!(found.starts_with(&expected), "{text}: {found}");
     }
     for text in [old("2 2 0 0"), new("2 2 0 0")] {

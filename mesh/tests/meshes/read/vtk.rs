@@ -317,7 +317,7 @@ fn prism(polygon: &[[f64; 2]], move_by: f64, is_turned: bool) -> String {
 fn polyhedra_that_are_not_convex_are_told() {
     const CORNER: [[f64; 2]; 6] = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]];
     const STRAIGHT: [[f64; 2]; 6] = [[0., 0.], [1., 0.], [2., 0.], [2.3, 1.1], [1., 2.], [0., 2.]];
-    let told = ["has a polyhedron that is not convex, which becomes the hull of its points"];
+    let told = ["has polyhedra that are not convex, which become the hulls of their points: 1"];
     for is_turned in [false, true] {
         for (polygon, notes) in [(CORNER, &told[..]), (STRAIGHT, &[])] {
             for move_by in [0.0, 1000.0] {
@@ -333,5 +333,5 @@ fn polyhedra_that_are_not_convex_are_told() {
     let length: usize = list.split(' ').count();
     let two = format!("{}CELLS 2 {}\n{list}\n{list}\nCELL_TYPES 2\n42 42\n", &one[..start], 2 * length);
     let found = read_cells(two.as_bytes(), Format::Vtk, &LIMITS).expect("sound").notes;
-    assert_eq!(found, ["has 2 polyhedra that are not convex, which become the hulls of their points"]);
+    assert_eq!(found, ["has polyhedra that are not convex, which become the hulls of their points: 2"]);
 }
