@@ -369,8 +369,10 @@ fn chosen(
 /// The numbered PNG files of another program in a folder, and their rate (1/s), which is to be given.
 fn others(path: &Path, rate: Option<f64>) -> Result<(Numbered, f64), Failure> {
     let name = path.display();
-    let found = beside::numbered(path, "", ".png")
-        .map_err(|(message, _)| Failure::usage(format!("{name} {message}; move the others to another folder")))?;
+    let found = beside::numbered(path, "", ".png").map_err(|(message, help)| {
+        let help = help.unwrap_or_else(|| "move the others to another folder".to_owned());
+        Failure::usage(format!("{name} {message}; {help}"))
+    })?;
     let Some((first, file)) = found.first() else {
         let like = frame_file_name(0);
         bail!(

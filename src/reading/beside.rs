@@ -51,7 +51,7 @@ pub(crate) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
 /// `frame (7).png`. A minus before it is the sign of the number if another of the files has the number 0 without it.
 ///
 /// # Errors
-/// The folder cannot be read, or has several such sequences, or the numbers may be those behind decimal points: 0.5 and 0.25.
+/// The folder cannot be read, or has several such sequences, or the numbers are not whole.
 pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(i64, PathBuf)>, Wrong> {
     let split = |path: PathBuf| {
         let inner = path.file_name()?.to_str()?.strip_prefix(before)?;
@@ -66,6 +66,14 @@ pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(
     let all = entries(folder)
         .map_err(|error| (format!("cannot be read: {error} (looked for {})", folder.display()), None))?;
     let mut found: Vec<_> = all.into_iter().filter_map(split).collect();
+    let end = |(stem, _, path): &&(String, i64, PathBuf)| {
+        let digits = name_of(path).len().checked_sub(before.len() + stem.len() + after.len());
+        is_fraction(&format!("{before}{stem}"), digits.unwrap_or_default())
+    };
+    if let Some((.., path)) = found.iter().find(end) {
+        let message = format!("has numbers that are not whole, such as that of {}", name_of(path));
+        return Err((message, Some("number the files in their order".to_owned())));
+    }
     let middle = found.iter().filter(|(_, number, _)| *number == 0).map(|(stem, ..)| stem).min().cloned();
     for (stem, number, _) in &mut found {
         if middle.as_ref().is_some_and(|middle| stem.strip_suffix('-') == Some(middle)) {
@@ -85,18 +93,16 @@ pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(
         let [one, other] = [&pair[0].2, &pair[1].2].map(|path| name_of(path));
         return Err((format!("has two files of one number, {one} and {other}; expected one"), None));
     }
-    let length = |(stem, _, path): &(String, i64, PathBuf)| {
-        let head = format!("{before}{stem}");
-        let is_whole = head.strip_suffix('.').is_some_and(|whole| whole.ends_with(|c: char| c.is_ascii_digit()));
-        is_whole.then(|| name_of(path).len())
-    };
-    let lengths: Vec<_> = found.iter().filter_map(length).collect();
-    if lengths.windows(2).any(|pair| pair[0] != pair[1]) {
-        let [one, other] = [0, found.len() - 1].map(|at| name_of(&found[at].2));
-        let message = format!("has numbers with decimal points, from {one} to {other}; expected whole numbers");
-        return Err((message, Some("number the files in their order".to_owned())));
-    }
     Ok(found.into_iter().map(|(_, number, path)| (number, path)).collect())
+}
+
+/// Whether some digits behind the rest of a name are the last ones of a number that is not whole: `0.25`, `0,5`, `1p5`, `1e-3`. Frames of a
+/// version have any number of them, `v2.8`, and others four or more.
+fn is_fraction(head: &str, digits: usize) -> bool {
+    let is_digit = |c: char| c.is_ascii_digit();
+    let Some(whole) = head.trim_end_matches('-').strip_suffix(['.', ',', 'p', 'e']) else { return false };
+    let before = whole.trim_end_matches(is_digit);
+    digits < 4 && before.len() < whole.len() && !before.ends_with(['v', 'V'])
 }
 
 /// The message for a missing file. One with one of the `endings` is suggested.

@@ -6,13 +6,14 @@ use super::npy::begin;
 use super::npz::Npz;
 use super::recording::{Flaw, check_length};
 use crate::reading::beside::{self, Wrong, ending, name_of};
-use crate::reading::words::{count, short};
+use crate::reading::words::{count, list, short};
 use glam::DVec3;
 use localshape_mesh::{self as mesh, Cells, Format};
 use serde::Deserialize;
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use zip::ZipWriter;
 
@@ -51,18 +52,18 @@ impl Sequence {
         };
         let first = ReadMoment::read(&moments[0], limits)?;
         check_length(moments.len() as u64, first.cells.points.len() as u64, limits)?;
-        let is_displaced = first.cells.displacements.is_some() && is_at_rest(&moments, &first, limits)?;
-        let (archive, moves) = copied(&moments, &first, step, is_displaced, limits)?;
+        let waits = waiting(&moments, &first, limits)?;
+        let (archive, moves) = copied(&moments, &first, step, &waits, limits)?;
         let note = match moments.len() {
             1 if first.cells.displacements.is_some() => Some((
                 "has one moment, to whose points its array `displacement` or `U` is not added".to_owned(),
                 "add it in the program that wrote it, or list the moment at rest before it",
             )),
             1 => None,
-            _ if is_displaced => Some((
+            _ if waits.contains(&true) => Some((
                 format!(
                     "has points that do not move, to which their array `displacement` or `U` is added{}",
-                    first.still.as_ref().map_or_else(String::new, |name| format!("; {name} has none, and stays"))
+                    first.without_displacements()
                 ),
                 "give the array another name if it is no displacement",
             )),
@@ -227,8 +228,17 @@ struct ReadMoment {
     is_surface: bool,
     /// Whether triangles share points only where these are equal.
     is_welded: bool,
-    /// A file without displacements beside others that have them.
-    still: Option<String>,
+    /// Its files.
+    parts: Vec<Part>,
+}
+
+/// A file of a moment.
+#[derive(Clone)]
+struct Part {
+    name: String,
+    /// Its points.
+    points: Range<usize>,
+    has_displacements: bool,
 }
 
 impl ReadMoment {
@@ -283,15 +293,13 @@ impl ReadMoment {
             let message = format!("brings its moment to more points or cells than are allowed, {most} points");
             return Err(Flaw::new(&name, message).with_help("allow it with --allow-large (in code, `Limits::NONE`)"));
         }
+        let first = self.cells.points.len();
+        let (points, has_displacements) = (first..first + cells.points.len(), cells.displacements.is_some());
+        self.parts.push(Part { name, points, has_displacements });
         // Some pieces may be empty.
         if self.cells.points.is_empty() {
             self.cells = cells;
         } else if !cells.points.is_empty() {
-            match [&self.cells, &cells].map(|cells| cells.displacements.is_some()) {
-                [true, false] => self.still = Some(name),
-                [false, true] => self.still = Some(self.name.clone()),
-                _ => {}
-            }
             append(&mut self.cells, cells);
         }
         Ok(())
@@ -321,13 +329,34 @@ impl ReadMoment {
         Ok(self)
     }
 
-    /// With the displacements added to the points.
-    fn displaced(mut self) -> Result<Self, Flaw> {
-        let Some(by) = self.cells.displacements.take() else {
-            return Err(Flaw::new(self.name, "has no `displacement` for each point, and files before it have"));
-        };
-        self.cells.points.iter_mut().zip(by).for_each(|(point, by)| *point += by);
+    /// With displacements added to the points of the files that wait for them.
+    fn displaced(mut self, waits: &[bool]) -> Result<Self, Flaw> {
+        let by = self.cells.displacements.take().unwrap_or_default();
+        for (part, _) in self.parts.iter().zip(waits).filter(|(_, waits)| **waits) {
+            if !part.has_displacements {
+                let message = "has no `displacement` for each point, and files of other moments have";
+                return Err(Flaw::new(part.name.clone(), message));
+            }
+            part.points.clone().for_each(|at| self.cells.points[at] += by[at]);
+        }
         Ok(self)
+    }
+
+    /// The displacements of the points of a part; none without an array.
+    fn displacements(&self, points: Range<usize>) -> Vec<DVec3> {
+        let none = vec![DVec3::ZERO; points.len()];
+        self.cells.displacements.as_ref().map_or(none, |all| all[points].to_vec())
+    }
+
+    /// The files that have no displacements beside others that have them, in words behind a sentence.
+    fn without_displacements(&self) -> String {
+        let names: Vec<_> = self.parts.iter().filter(|part| !part.has_displacements).map(|part| &part.name).collect();
+        let all = list(&names, "and", str::to_owned);
+        match names.len() {
+            0 => String::new(),
+            1 => format!("; {all} has none"),
+            _ => format!("; {all} have none"),
+        }
     }
 
     /// Refuses a moment that is not one of the same body after another.
@@ -374,27 +403,34 @@ fn append(all: &mut Cells, other: Cells) {
     }
 }
 
-/// Whether the points of all moments are those of the first, to round-off of numbers in single precision, beside which their
-/// displacements are large.
-fn is_at_rest(moments: &[Listed], first: &ReadMoment, limits: &Limits) -> Result<bool, Flaw> {
+/// Which files of the first moment wait for the displacements of their points: these are at rest to round-off of numbers in single
+/// precision, beside which displacements are large.
+fn waiting(moments: &[Listed], first: &ReadMoment, limits: &Limits) -> Result<Vec<bool>, Flaw> {
     /// The greatest move of a point, as a share of the largest coordinate and as one of the greatest change of a displacement.
     const STILL: [f64; 2] = [1e-6, 1e-2];
+    let none = vec![false; first.parts.len()];
+    let [_, between @ .., last] = moments else { return Ok(none) };
+    let last = ReadMoment::read(last, limits)?;
+    if first.cells.displacements.is_none() && last.cells.displacements.is_none() {
+        return Ok(none);
+    }
     let far = first.cells.points.iter().fold(0.0, |far: f64, point| far.max(point.abs().max_element()));
-    let (mut moved, mut displaced) = (0.0, 0.0);
-    for listed in &moments[1..] {
-        let cells = ReadMoment::read(listed, limits)?.cells;
-        if cells.points.len() != first.cells.points.len() {
-            return Ok(false);
+    let mut found: Vec<_> = first.parts.iter().map(|part| (part.has_displacements, 0.0, 0.0)).collect();
+    for moment in std::iter::once(Ok(last)).chain(between.iter().map(|listed| ReadMoment::read(listed, limits))) {
+        let moment = moment?;
+        let points = |moment: &ReadMoment| moment.parts.iter().map(|part| part.points.clone()).collect::<Vec<_>>();
+        if points(&moment) != points(first) {
+            return Ok(none);
         }
-        moved = largest_change(&cells.points, &first.cells.points).max(moved);
-        if let (Some(now), Some(before)) = (&cells.displacements, &first.cells.displacements) {
-            displaced = largest_change(now, before).max(displaced);
-        }
-        if moved > STILL[0] * far {
-            return Ok(false);
+        for ((has, moved, displaced), part) in found.iter_mut().zip(&moment.parts) {
+            let at = || part.points.clone();
+            *has |= part.has_displacements;
+            *moved = largest_change(&moment.cells.points[at()], &first.cells.points[at()]).max(*moved);
+            *displaced = largest_change(&moment.displacements(at()), &first.displacements(at())).max(*displaced);
         }
     }
-    Ok(moments.len() > 1 && moved <= STILL[1] * displaced)
+    let waits = |(has, moved, displaced)| has && moved <= STILL[0] * far && moved <= STILL[1] * displaced;
+    Ok(found.into_iter().map(waits).collect())
 }
 
 /// The greatest distance between vectors at one place in two lists.
@@ -414,13 +450,13 @@ fn step_in(bytes: &[u8]) -> Option<f64> {
     STEPS.iter().find_map(|comment| number_in(bytes, comment)).filter(|step| *step > 0.0)
 }
 
-/// The archive of some moments, of which the first is read, with displaced points or not, and whether these move. Velocities wait in a
+/// The archive of some moments, of which the first is read, whose files may wait for displacements, and whether points move. Velocities wait in a
 /// file of their own until all positions are there.
 fn copied(
     moments: &[Listed],
     first: &ReadMoment,
     step: Option<f64>,
-    is_displaced: bool,
+    waits: &[bool],
     limits: &Limits,
 ) -> Result<(Npz, bool), Flaw> {
     let failed = |error: io::Error| Flaw::new("", format!("cannot be brought into one file: {error}"));
@@ -438,12 +474,11 @@ fn copied(
         let mut all = moment.cells.velocities.iter().filter(|_| moves).flatten();
         all.try_for_each(|one| vector(&mut velocities, one))
     };
-    let displaced = |moment: ReadMoment| if is_displaced { moment.displaced() } else { Ok(moment) };
-    let mut last = displaced(first.clone())?;
+    let mut last = first.clone().displaced(waits)?;
     copy(&last).map_err(failed)?;
     let mut is_moving = false;
     for listed in &moments[1..] {
-        let moment = displaced(ReadMoment::read(listed, limits)?.joined_like(first)?)?;
+        let moment = ReadMoment::read(listed, limits)?.joined_like(first)?.displaced(waits)?;
         moment.check_after(&last)?;
         copy(&moment).map_err(failed)?;
         is_moving |= moment.cells.points != last.cells.points;

@@ -632,12 +632,31 @@ fn times_in_names_are_no_numbers_of_files() {
         let files: Vec<_> = files.iter().map(|(name, bytes)| (*name, &bytes[..])).collect();
         load_sequence(&files, "lattice = { cells = [1, 1, 1], side = 1 }", pattern, &Limits::default())
     };
-    for pattern in ["t_*.obj", "t_0.*.obj"] {
-        let error = of(["t_0.25.obj", "t_0.5.obj", "t_0.75.obj"], pattern).expect_err("times").to_string();
-        assert!(error.contains("has numbers with decimal points, from t_0.5.obj to t_0.75.obj"), "{error}");
+    let wrong = |names: [&str; 3], pattern: &str| {
+        let error = of(names, pattern).expect_err("times").to_string();
+        assert!(error.contains("has numbers that are not whole, such as that of t_"), "{error}");
         assert!(error.contains("number the files in their order, or list them with their times in a .pvd"), "{error}");
+    };
+    for pattern in ["t_*.obj", "t_0.*.obj"] {
+        wrong(["t_0.25.obj", "t_0.5.obj", "t_0.75.obj"], pattern);
     }
-    of(["t_v2.08.obj", "t_v2.09.obj", "t_v2.10.obj"], "t_*.obj").expect("versions before numbers of one length");
+    for names in [
+        ["t_0,25.obj", "t_0,5.obj", "t_0,75.obj"],
+        ["t_0p25.obj", "t_0p5.obj", "t_0p75.obj"],
+        ["t_0.25.obj", "t_0.50.obj", "t_0.75.obj"],
+        ["t_0.75.obj", "t_1.0.obj", "t_1.25.obj"],
+        ["t_1e-3.obj", "t_2e-3.obj", "t_1e-2.obj"],
+    ] {
+        wrong(names, "t_*.obj");
+    }
+    for names in [
+        ["t_v2.8.obj", "t_v2.9.obj", "t_v2.10.obj"],
+        ["t_1.0001.obj", "t_1.0002.obj", "t_1.0003.obj"],
+        ["step8.obj", "step9.obj", "step10.obj"],
+    ] {
+        let scene = of(names, &format!("{}*.obj", &names[0][..2])).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(course(&scene, 3), [0.0, 1.0, 2.0], "{names:?}");
+    }
 }
 
 /// The cells of `.mesh` and `.inp` files are elements, not surfaces.
@@ -727,7 +746,22 @@ fn displacements_of_points_at_rest_are_added_and_told() {
     let files = [("a.vtu", &one[..]), ("b.vtu", &other), ("t.vtu", &tool), ("l.pvd", &list(&parts))];
     let scene = of_sequence(&files, "l.pvd");
     assert_eq!(course(&scene, 2), [0.0, 0.5]);
-    assert!(warnings(&scene).contains("is added; t.vtu has none, and stays"), "{}", warnings(&scene));
+    assert!(warnings(&scene).contains("is added; t.vtu has none"), "{}", warnings(&scene));
+    // Nor do moves of the tool matter; but all files of a body have the array.
+    let moved = tetrahedron(10, 8.0);
+    let parts = [
+        (0.0, "a.vtu", "part='0'"),
+        (0.0, "t.vtu", "part='1'"),
+        (0.1, "b.vtu", "part='0'"),
+        (0.1, "u.vtu", "part='1'"),
+    ];
+    let at = |b: &[u8]| {
+        let files = [("a.vtu", &one[..]), ("b.vtu", b), ("t.vtu", &tool), ("u.vtu", &moved), ("l.pvd", &list(&parts))];
+        load_sequence(&files, "lattice = { cells = [1, 1, 1], side = 1 }", "l.pvd", &Limits::default())
+    };
+    assert_eq!(course(&at(&other).unwrap_or_else(|error| panic!("{error}")), 2), [0.0, 0.5]);
+    let error = at(&tetrahedron(10, 0.0)).expect_err("no array").to_string();
+    assert!(error.contains("b.vtu has no `displacement` for each point, and files of other moments have"), "{error}");
     // A body of millimetres.
     let long = String::from_utf8(tetrahedron(10, 0.0))
         .unwrap()

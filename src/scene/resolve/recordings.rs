@@ -2,7 +2,7 @@
 
 use super::lists::{ListSource, Lists};
 use super::{KeyPath, Typed, body, mesh};
-use crate::reading::beside::missing;
+use crate::reading::beside::{ending, missing};
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, hexadecimal, list, nearest};
 use crate::scene::file::{Positive, RunFile, StatesFile, Up};
@@ -67,6 +67,9 @@ impl ReadRecording {
             if !path.exists() {
                 let (message, help) = missing(&path, &["npz"]);
                 return Err(Flaw { help, ..Flaw::new("", message) });
+            }
+            if let Some(help) = localshape_mesh::converter(&ending(&path)) {
+                return Err(Flaw::new("", "is a file of a format that is not read").with_help(help));
             }
             if crate::scene::mesh::is_mesh(&path) {
                 let help = "name those of all moments with a star, such as \"frames/*.obj\", or in a list (.pvd)";
