@@ -6,8 +6,8 @@ use super::{OutputError, exact, rows_as_csv};
 use crate::runner::TableRow;
 use crate::runner::growing::{Growing, Grown};
 use crate::runner::{Frame, RunFrame};
-use crate::scene::measure::{SIZES, exerted};
-use crate::scene::{ALL_BODIES, Run, Scene};
+use crate::scene::measure::{Forces, SIZES};
+use crate::scene::{ALL_BODIES, Scene};
 use crate::sim::{Diagnostic, Diagnostics, Reaction, Snapshot, Status, Value};
 use glam::DVec3;
 use std::fs;
@@ -39,7 +39,7 @@ impl<'a> DiagnosticsWriter<'a> {
         let file = Growing::open(&hidden, None).map_err(OutputError::writing(&path))?;
         let mut writer = Self { scene, file, hidden, path };
         let heads = cells(["", ALL_BODIES], None, 0.0, Status::Ok, &Diagnostics::default());
-        let measured = Measured { scene, run: None, forces: &[], displaced: &[] }.cells(None);
+        let measured = Measured { scene, forces: Forces::new(scene, None, &[]), displaced: &[] }.cells(None);
         let heads = heads.into_iter().chain(measured).map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
@@ -75,7 +75,8 @@ impl<'a> DiagnosticsWriter<'a> {
             let run = &self.scene.runs[*run];
             let bodies: Vec<_> = run.several(self.scene).map(|(body, _)| body).collect();
             let mut add = |frame, time, status, all, of_bodies: &[Diagnostics], (forces, displaced): Known<'_>| {
-                let measured = Measured { scene: self.scene, run: Some(run), forces, displaced };
+                let forces = Forces::new(self.scene, Some(run), forces);
+                let measured = Measured { scene: self.scene, forces, displaced };
                 let own = (0..).zip(of_bodies).zip(&bodies).map(|((at, one), &body)| (Some(at), body, one));
                 rows.extend(std::iter::once((None, ALL_BODIES, all)).chain(own).map(|(at, body, one)| {
                     let mut row = cells([&run.name, body], frame, time, status, one);
@@ -115,10 +116,7 @@ impl<'a> DiagnosticsWriter<'a> {
 /// What obstacles, constraints and bodies exert in a row of a run, and how far probes have moved.
 struct Measured<'a> {
     scene: &'a Scene,
-    /// `None` for headings.
-    run: Option<&'a Run>,
-    /// Empty if nothing is known.
-    forces: &'a [Reaction],
+    forces: Forces<'a>,
     /// The displacements of probes; empty for headings.
     displaced: &'a [[f64; 6]],
 }
@@ -127,14 +125,12 @@ impl Measured<'_> {
     /// Force and torque of each obstacle, of each constraint and of each of several bodies, on a body of the run, or on all its bodies together,
     /// with the headings of their columns, where forces are kept; then the displacement of each probe.
     fn cells(&self, on: Option<usize>) -> Vec<(String, String)> {
-        let Self { scene, run, forces, displaced } = *self;
-        let names = scene.exerting().into_iter().filter(|_| scene.keeps_forces());
-        let of_source = |name: &str| {
-            let from = run.map_or_else(Vec::new, |run| scene.sources(run, name));
-            let both = ["force", "torque"].into_iter().zip(exerted(&from, forces, on));
+        let Self { scene, forces, displaced } = self;
+        let of_source = |(name, sums): (&str, [DVec3; 2])| {
+            let both = ["force", "torque"].into_iter().zip(sums);
             both.flat_map(|(key, sum)| axes(&format!("{key} of {name}"), sum)).collect::<Vec<_>>()
         };
-        let mut cells: Vec<_> = names.flat_map(of_source).collect();
+        let mut cells: Vec<_> = forces.on(on).filter(|_| scene.keeps_forces()).flat_map(of_source).collect();
         let first = on.map_or(0, |on| on + 1) * scene.probes.len();
         for (at, probe) in scene.probes.iter().enumerate() {
             let [x, y, z, sizes @ ..] = displaced.get(first + at).copied().unwrap_or([f64::NAN; 6]);

@@ -41,6 +41,15 @@ impl Extremes {
             *greatest = own;
         }
     }
+
+    /// Takes note of the magnitude of what is 0 for most of the time: of its greatest value alone.
+    pub(crate) fn note_peak(&mut self, name: String, time: f64, value: f64) {
+        let own = Extreme { value, time };
+        let greatest = self.greatest.entry(name).or_insert(own);
+        if value > greatest.value || value == greatest.value && time < greatest.time {
+            *greatest = own;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::runner::{Frame, TableRow, TimeSeries};
-use crate::scene::{AtRest, Rest, Scene};
-use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Scope, Snapshot, Status, Unsolved};
+use crate::scene::{AtRest, Rest, Run, Scene};
+use crate::sim::{Chosen, Diagnostic, Diagnostics, Divergence, Reaction, Scope, Snapshot, Status, Unsolved};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 
@@ -210,9 +210,11 @@ impl Numbers {
 }
 
 impl RunEntry {
-    /// Records magnitudes of single things at a time (s).
-    fn note_single(&mut self, time: f64, all: Vec<(String, f64)>) {
+    /// Records magnitudes of single things of a run at a time (s), and between its bodies.
+    fn note_single(&mut self, time: f64, scene: &Scene, run: &Run, forces: &[Reaction], displaced: &[[f64; 6]]) {
+        let all = scene.magnitudes(run, forces, displaced);
         all.iter().for_each(|(name, value)| self.extremes.note_one(name, time, *value));
+        scene.between(run, forces).into_iter().for_each(|(name, value)| self.extremes.note_peak(name, time, value));
     }
 }
 
@@ -257,7 +259,7 @@ impl Summary {
         for ((summary, rows), run) in self.runs.iter_mut().zip(between).zip(&frame.runs) {
             for TableRow { time, all, reactions, displaced, .. } in rows {
                 summary.extremes.note(Diagnostic::ALL, *time, all);
-                summary.note_single(*time, scene.magnitudes(&scene.runs[run.run], reactions, displaced));
+                summary.note_single(*time, scene, &scene.runs[run.run], reactions, displaced);
             }
         }
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
@@ -269,7 +271,7 @@ impl Summary {
             };
             summary.extremes.note(Diagnostic::ALL, time, diagnostics);
             let run = &scene.runs[run.run];
-            summary.note_single(time, scene.magnitudes(run, reactions, &scene.all_displaced(run, position)));
+            summary.note_single(time, scene, run, reactions, &scene.all_displaced(run, position));
         }
     }
 

@@ -91,12 +91,17 @@ impl Scene {
                 continue;
             }
             let what = match (key, of.plot) {
-                ("on", _) => "one of several bodies on which a force or a torque acts",
+                ("on", Measure::Displacement) => "no `on`, which is a body that a force or a torque acts on",
+                ("on", _) => "one of several bodies that a force or a torque acts on",
                 ("of", Measure::Force | Measure::Torque) => "an obstacle, a hold, a grab or one of several bodies",
                 _ => "a probe, a hold, a grab or an obstacle",
             };
             let here = list(known, "or", quoted);
-            let expected = if known.is_empty() { format!("{what}; there is none") } else { format!("{what}: {here}") };
+            let expected = match (key, of.plot) {
+                ("on", Measure::Displacement) => what.to_owned(),
+                _ if known.is_empty() => format!("{what}; there is none"),
+                _ => format!("{what}: {here}"),
+            };
             let help = nearest(name, known).map(|near| format!("did you mean {}?", quoted(near)));
             let path = key_path![path; key];
             report.at(&path, format!("`{}` is {}; expected {expected}", written(&path), quoted(name)), help);

@@ -5,6 +5,7 @@ use crate::look::{Measure, PlotOf};
 use crate::sim::{Motion, Obstacle, Reaction, Source};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 
 /// Nodes with a name, whose displacement is measured.
 #[derive(Clone, Debug)]
@@ -99,12 +100,43 @@ impl<'a> Meter<'a> {
 }
 
 /// The force (N) and the torque about the origin (N m) of some things on a body, or on all; NaN if they are not known.
-pub(crate) fn exerted(from: &[Source], forces: &[Reaction], on: Option<usize>) -> [DVec3; 2] {
+fn exerted(from: &[Source], forces: &[Reaction], on: Option<usize>) -> [DVec3; 2] {
     if from.is_empty() || forces.is_empty() {
         return [DVec3::NAN; 2];
     }
     let found = forces.iter().filter(|one| from.contains(&one.from) && on.is_none_or(|on| one.on == on));
     found.fold([DVec3::ZERO; 2], |[force, torque], one| [force + one.force, torque + one.torque])
+}
+
+/// The forces of a moment in a run, of all that exerts some.
+#[derive(Debug)]
+pub(crate) struct Forces<'a> {
+    /// Each name with the forces of what has it, body after body.
+    named: Vec<(&'a str, Vec<&'a Reaction>)>,
+}
+
+impl<'a> Forces<'a> {
+    /// None are known without a run or if there are no `forces`.
+    pub(crate) fn new(scene: &'a Scene, run: Option<&Run>, forces: &'a [Reaction]) -> Self {
+        let mut by: HashMap<Source, Vec<&Reaction>> = HashMap::new();
+        forces.iter().for_each(|one| by.entry(one.from).or_default().push(one));
+        let of = |source: Source| by.get(&source).into_iter().flatten().copied();
+        let sources = |name| run.map_or_else(Vec::new, |run| scene.sources(run, name));
+        let named = scene.exerting().into_iter().map(|name| (name, sources(name).into_iter().flat_map(of).collect()));
+        Self { named: named.collect() }
+    }
+
+    /// The force (N) and the torque about the origin (N m) of each thing on a body, or on all; NaN where they are not known.
+    pub(crate) fn on(&self, on: Option<usize>) -> impl Iterator<Item = (&'a str, [DVec3; 2])> {
+        self.named.iter().map(move |(name, all)| {
+            if all.is_empty() {
+                return (*name, [DVec3::NAN; 2]);
+            }
+            let found = all.iter().filter(|one| on.is_none_or(|on| one.on == on));
+            let sum = found.fold([DVec3::ZERO; 2], |[force, torque], one| [force + one.force, torque + one.torque]);
+            (*name, sum)
+        })
+    }
 }
 
 impl Scene {
@@ -176,25 +208,28 @@ impl Scene {
         [mean.x, mean.y, mean.z, lengths().sum::<f64>() / ways.len() as f64, least, most]
     }
 
-    /// Magnitudes of single things by their names: of forces and torques on all bodies of a run and between each two of them, if they are
-    /// known, and of displacements of probes, in all bodies of a run.
+    /// Magnitudes of single things by their names: of forces and torques on all bodies of a run, if they are known, and of displacements
+    /// of probes.
     pub(crate) fn magnitudes(&self, run: &Run, forces: &[Reaction], displaced: &[[f64; 6]]) -> Vec<(String, f64)> {
-        let of_source = |(name, on): (String, Option<usize>)| {
-            let whole = on.map_or_else(|| name.clone(), |on| format!("{name} on {}", self.bodies[run.of[on]].name));
-            let sums = exerted(&self.sources(run, &name), forces, on).map(DVec3::length);
-            let named = |(key, sum)| (format!("{key} of {whole}"), sum);
-            ["force", "torque"].into_iter().zip(sums).map(named).collect::<Vec<_>>()
-        };
-        let things = self.exerting().into_iter().map(|name| (name.to_owned(), None));
-        // Forces of two bodies on each other are opposite.
-        let name = |at: usize| self.bodies[run.of[at]].name.clone();
-        let pairs = (0..run.of.len()).flat_map(|on| (0..on).map(move |from| (name(from), Some(on))));
-        let all = things.chain(pairs).filter(|_| !forces.is_empty());
         let of_probe = |(probe, displaced): (&Probe, &[f64; 6])| {
             let sizes = SIZES.into_iter().zip(&displaced[3..]);
             sizes.map(|(key, &size)| (format!("displacement of {}_{key}", probe.name), size)).collect::<Vec<_>>()
         };
-        all.flat_map(of_source).chain(self.probes.iter().zip(displaced).flat_map(of_probe)).collect()
+        let forces = (!forces.is_empty()).then(|| Forces::new(self, Some(run), forces));
+        let of_sources = forces.iter().flat_map(|forces| forces.on(None)).flat_map(|(name, sums)| named(name, sums));
+        of_sources.chain(self.probes.iter().zip(displaced).flat_map(of_probe)).collect()
+    }
+
+    /// The magnitudes of force and torque between each two bodies of a run that touch, with their names.
+    pub(crate) fn between(&self, run: &Run, forces: &[Reaction]) -> Vec<(String, f64)> {
+        let name = |body: usize| &self.bodies[run.of[body]].name;
+        let of_pair = |one: &Reaction| {
+            let Source::Body(from) = one.from else { return None };
+            // That on the other body is the opposite.
+            let is_first = from < one.on && one.force != DVec3::ZERO;
+            is_first.then(|| named(&format!("{} on {}", name(from), name(one.on)), [one.force, one.torque]))
+        };
+        forces.iter().filter_map(of_pair).flatten().collect()
     }
 
     /// The displacements of all probes, in all bodies of a run together and, if there are several, in each.
@@ -214,6 +249,12 @@ impl Probe {
         let first = run.bodies.nodes(at).start;
         self.nodes.get(run.of[at]).into_iter().flatten().map(move |&node| first + node as usize)
     }
+}
+
+/// The magnitudes of the force and the torque of a thing.
+fn named(thing: &str, sums: [DVec3; 2]) -> [(String, f64); 2] {
+    let [force, torque] = sums.map(DVec3::length);
+    [(format!("force of {thing}"), force), (format!("torque of {thing}"), torque)]
 }
 
 /// The way from the start of a motion to the farthest point of it (m); zero if it does not move, or along a path of the caller's own.

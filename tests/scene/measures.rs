@@ -44,7 +44,7 @@ fn charts_name_things_that_are_there() {
     case("{ plot = 'force', of = 'hold[0]', along = [0, 0, 0] }", "1:58 is zero, so it has no direction");
     case(
         "{ plot = 'force', of = 'hold[0]', on = 'a' }",
-        "1:55 is \"a\"; expected one of several bodies on which a force or a torque acts; there is none",
+        "1:55 is \"a\"; expected one of several bodies that a force or a torque acts on; there is none",
     );
     case("{ plot = 'weight', of = 'hold[0]' }", "1:25 expected \"force\", \"torque\" or \"displacement\"");
     case("'hold_forc'", "1:16 did you mean \"hold_force\"?");
@@ -105,9 +105,12 @@ fn forces_between_two_bodies_are_charts() {
     let wrong = |chart: &str, words: &str| expect(&bad(&format!("{scene}view.charts = [{chart}]")), 7, words);
     wrong(
         "{ plot = 'force', of = 'low', on = 'low' }",
-        "1:51 expected one of several bodies on which a force or a torque acts: \"high\"",
+        "1:51 expected one of several bodies that a force or a torque acts on: \"high\"",
     );
-    wrong("{ plot = 'displacement', of = 'ground', on = 'low' }", "1:61 a force or a torque acts; there is none");
+    wrong(
+        "{ plot = 'displacement', of = 'ground', on = 'low' }",
+        "1:61 expected no `on`, which is a body that a force or a torque acts on",
+    );
 }
 
 #[test]

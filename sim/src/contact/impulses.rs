@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What exerts a force on a body, counted from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "scene", derive(serde::Serialize, serde::Deserialize))]
 pub enum Source {
     /// An obstacle.

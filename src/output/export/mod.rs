@@ -316,7 +316,7 @@ impl<T> OfBody<T> {
 
 /// The first bytes of the SHA-256 digest of a file.
 fn checksum(bytes: &[u8]) -> u64 {
-    Sha256::digest(bytes).iter().take(8).fold(0, |sum, &byte| sum << 8 | u64::from(byte))
+    Sha256::digest(bytes).first_chunk().map_or(0, |first| u64::from_be_bytes(*first))
 }
 
 /// The name of a body in files.
