@@ -48,7 +48,9 @@ impl Scene {
             let help = format!("lengths are in metres: write scale = {scale} in this run if its unit is another one");
             return Some([message, help]);
         }
-        (recorded >= LONG).then(|| {
+        // This program writes metres, and its time step.
+        let is_own = run.recording.as_ref().is_some_and(|recording| recording.step.is_some());
+        (simulated == 0.0 && recorded >= LONG && !is_own).then(|| {
             let message = format!("the recording of {name} is {} m long, as no `scale` is given", short(recorded));
             let help = "write scale = 0.001 in this run if its unit is the millimetre, scale = 1 if it is the metre";
             [message, help.to_owned()]

@@ -110,7 +110,7 @@ model = { kind = 'shape-based', stiffness = 1e4 }
         warnings.into_iter().map(|told| (told.line, told.message, told.help.unwrap_or_default())).collect::<Vec<_>>()
     };
     let told = |unit: f64| played(scene, unit);
-    assert_eq!([1.0, 20.0, 0.02].map(|unit| told(unit).len()), [0; 3]);
+    assert_eq!([1.0, 50.0, 0.02].map(|unit| told(unit).len()), [0; 3]);
     let message = "the recording of \"Played\" is 1000 times as long as the simulated bodies: 1000 m beside 1 m";
     let help = "lengths are in metres: write scale = 0.001 in this run if its unit is another one";
     assert_eq!(told(1000.0), [(8, message.to_owned(), help.to_owned())]);
@@ -133,7 +133,9 @@ fn what_begins_after_the_end() {
     let late =
         |key: &str, time: &str| vec![format!("`{key}` does nothing: it begins at {time} s, and the scene ends at 1 s")];
     let load = |times: &str| of(&format!("[[load]]\nforce = [1, 0, 0]\n{times}\n"));
-    assert_eq!(load("from = 0.9\nramp = 5"), [""; 0]);
+    let rising = "`load[0]` is never whole: it rises until 5.9 s, and the scene ends at 1 s";
+    assert_eq!(load("from = 0.9\nramp = 5"), [rising]);
+    assert_eq!(load("from = 0.5\nramp = 0.5"), [""; 0]);
     assert_eq!(load("from = 1\nramp = 5"), late("load[0]", "1"));
     assert_eq!(load("keys = [{ time = 2, share = 0 }, { time = 3, share = 1 }]"), late("load[0]", "2"));
     assert_eq!(load("keys = [{ time = 2, share = 1 }, { time = 3, share = 0 }]"), [""; 0]);
@@ -143,6 +145,25 @@ fn what_begins_after_the_end() {
     let ball = "[[obstacle]]\nkind = 'sphere'\ncentre = [0, 9, 0]\nradius = 1\n";
     assert_eq!(of(&format!("{ball}{}", path(0))), [""; 0]);
     assert_eq!(of(&format!("{ball}{}", path(4))), late("obstacle[1].path", "4"));
+}
+
+/// Of a load that begins later, rest at the start knows nothing.
+#[test]
+fn loads_that_rise_in_a_scene_without_duration() {
+    let of = |times: &str| {
+        let text = CUBE.replace("duration = 1", "duration = 0\nstart = 'equilibrium'");
+        let load = format!("[[hold]]\nnodes = 'top'\n[[load]]\nforce = [1, 0, 0]\n{times}\n");
+        warnings(&format!("{text}model = {{ kind = 'shape-based', young = 1e5 }}\n{load}"))
+    };
+    let told = vec![(
+        "`load[0]` does nothing: it is 0 at the start, and the scene has no duration".to_owned(),
+        "leave out `from`, `ramp` and `keys`".to_owned(),
+    )];
+    for times in ["ramp = 1", "from = 0.1", "keys = [{ time = 0, share = 0 }, { time = 1, share = 1 }]"] {
+        assert_eq!(of(times), told, "{times}");
+    }
+    assert_eq!(of(""), []);
+    assert_eq!(of("keys = [{ time = 0, share = 0.5 }, { time = 1, share = 1 }]"), []);
 }
 
 #[test]

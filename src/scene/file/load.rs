@@ -55,8 +55,13 @@ pub(in crate::scene) struct LoadFile {
 impl LoadFile {
     /// The time (s) until which it does nothing.
     pub(in crate::scene) fn begin(&self) -> f64 {
-        let first = self.keys.as_ref().and_then(|keys| keys.first()).filter(|key| key.share == 0.0);
+        let first = self.shares().first().filter(|key| key.share == 0.0);
         first.map_or(self.from, |key| self.from.max(key.time))
+    }
+
+    /// Its shares at times; none if it has no `keys`.
+    pub(in crate::scene) fn shares(&self) -> &[ShareFile] {
+        self.keys.as_deref().unwrap_or_default()
     }
 }
 

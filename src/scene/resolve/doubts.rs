@@ -5,7 +5,7 @@ use crate::look::{View, font};
 use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, ends, quoted, short};
-use crate::scene::file::{MotionPath, SceneFile, ShapeFile};
+use crate::scene::file::{MotionPath, Positive, SceneFile, ShapeFile};
 use crate::scene::mesh::longest;
 use crate::scene::plausible::LONG;
 use crate::scene::{Run, Scene, SceneBody};
@@ -18,6 +18,7 @@ pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>)
     warn_of_time(scene, report);
     warn_of_uneven_rows(scene, report);
     warn_of_late(scene, typed, report);
+    warn_of_rising_loads(scene, typed, report);
     warn_of_degrees(scene, typed, report);
     warn_of_steps(scene, report);
     match &scene.contacts {
@@ -144,6 +145,23 @@ fn warn_of_late(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
         let (name, [time, end]) = (written(&path), [time, scene.duration].map(short));
         let message = format!("`{name}` does nothing: it begins at {time} s, and the scene ends at {end} s");
         report.warn(&path, message, "let it begin earlier, or make `duration` longer");
+    }
+}
+
+/// Warns of loads that are 0 in a scene without a duration, and of those that are not whole before the end.
+fn warn_of_rising_loads(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    for (at, load) in typed.file.load.iter().enumerate() {
+        let (Some(load), path) = (load, key_path!["load", at]) else { continue };
+        let (name, ramp) = (written(&path), load.ramp.map(|Positive(ramp)| load.from + ramp));
+        let is_zero = load.from > 0.0 || ramp.is_some() || load.shares().first().is_some_and(|key| key.share == 0.0);
+        if scene.duration == 0.0 && is_zero {
+            let message = format!("`{name}` does nothing: it is 0 at the start, and the scene has no duration");
+            report.warn(&path, message, "leave out `from`, `ramp` and `keys`");
+        } else if let Some(end) = ramp.filter(|&end| end > scene.duration && load.from < scene.duration) {
+            let [end, last] = [end, scene.duration].map(short);
+            let message = format!("`{name}` is never whole: it rises until {end} s, and the scene ends at {last} s");
+            report.warn(&path, message, "make `ramp` shorter, or `duration` longer");
+        }
     }
 }
 

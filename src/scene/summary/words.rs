@@ -28,9 +28,17 @@ impl Scene {
         self.of_each_body(|run, own, body| {
             let words = run.loads.iter().filter_map(|load| {
                 let nodes = own_nodes(load.nodes().unwrap_or_default(), own);
-                let Course { during, .. } = load.course();
+                let Course { during, keys, .. } = load.course();
                 let span = span(during.start, during.end, self.duration);
-                (!nodes.is_empty()).then(|| format!("{} {span}", describe_load(load, &nodes, body, self.dimension())))
+                let rise = match keys[..] {
+                    [] => String::new(),
+                    [[_, first], [end, last]] if first == 0.0 && last == 1.0 => {
+                        format!(", whole from {} s on", short(end))
+                    }
+                    _ => format!(", with shares at {} times", keys.len()),
+                };
+                let words = || format!("{} {span}{rise}", describe_load(load, &nodes, body, self.dimension()));
+                (!nodes.is_empty()).then(words)
             });
             words.collect()
         })
