@@ -1,5 +1,7 @@
 //! Frames: the runs of a scene at one moment.
 
+#[cfg(feature = "render")]
+use crate::sim::Divergence;
 use crate::sim::{Snapshot, Status};
 
 /// One frame of a scene: the requested runs at the same moment.
@@ -39,6 +41,12 @@ impl RunFrame {
         let is_known = other.run != self.run && other.shown().status == Status::Ok;
         let nodes = self.snapshot.position.iter().zip(&other.snapshot.position);
         self.snapshot.field = nodes.filter(|_| is_known).map(|(one, other)| one.distance(*other)).collect();
+    }
+
+    /// Whether it has diverged. A recording that has ended has not.
+    #[cfg(feature = "render")]
+    pub(crate) fn has_diverged(&self) -> bool {
+        matches!(self.snapshot.status, Status::Diverged(Divergence { is_end: false, .. }))
     }
 
     /// The state that pictures show.

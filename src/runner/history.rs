@@ -31,7 +31,7 @@ impl History {
     /// The place of the chosen azimuth among those of the camera. What diverges does not count.
     pub(crate) fn azimuth(&self) -> usize {
         let mut hidden = Hidden::default();
-        let sound = self.series.iter().filter(|series| series.divergence.is_none());
+        let sound = self.series.iter().filter(|series| !series.diverges());
         sound.for_each(|series| hidden.merge(&series.hidden));
         hidden.choice()
     }
@@ -84,6 +84,12 @@ impl TimeSeries {
             && self.readings.iter().all(|of| of.len() == moments)
             && self.paths.len() == empty.paths.len()
             && self.paths.iter().all(|path| path.len() == moments)
+    }
+
+    /// Whether the run diverges. A recording that ends does not.
+    #[cfg(feature = "render")]
+    pub(crate) fn diverges(&self) -> bool {
+        self.divergence.is_some_and(|divergence| !divergence.is_end)
     }
 
     /// Records the state at a time (s): diagnostics of all bodies together and of each, and nodes at positions (m).

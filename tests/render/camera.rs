@@ -122,6 +122,35 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// A tetrahedron grows to four times its size by the second of two moments, after which the scene goes on.
+#[test]
+fn recordings_that_end_before_their_scene_are_seen_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    for (at, size) in [1.0, 4.0].into_iter().enumerate() {
+        let points: String = (0..4)
+            .map(|axis| {
+                let point: [f64; 3] = std::array::from_fn(|at| if at + 1 == axis { size } else { 0.0 });
+                format!("v {} {} {}\n", point[0], point[1], point[2])
+            })
+            .collect();
+        std::fs::write(folder.path().join(format!("f{at}.obj")), points + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+            .unwrap();
+    }
+    let path = folder.path().join("scene.toml");
+    let body = "body = { lattice = { cells = [1, 1, 1], side = 0.1 } }\nrun = [{ name = 'R', states = 'f*.obj' }]\n";
+    std::fs::write(&path, format!("time = {{ duration = 1.5, frames_per_second = 2 }}\n{body}")).unwrap();
+    let (_, pictures) = film(&load(&path), 1);
+    assert_eq!(pictures.len(), 4);
+    for (frame, picture) in &pictures {
+        let [_, _, width, height] = picture.panels[0].viewport.map(|length| length as f32);
+        let [left, top, right, bottom] = outline(picture, 0).expect("a body");
+        assert!(
+            left >= 0.0 && top >= 0.0 && right <= width && bottom <= height,
+            "{frame}: {left} {top} {right} {bottom}"
+        );
+    }
+}
+
 #[test]
 fn a_frame_drawn_alone_is_that_of_its_sequence() {
     let scene = load(&shipped().into_iter().find(|path| path.ends_with("mixed.toml")).expect("a scene"));

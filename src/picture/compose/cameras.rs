@@ -91,7 +91,7 @@ pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
         Some(SeenMoment { time: 0.0, run, seen, is_sound: true })
     };
     let courses = history.series.iter().flat_map(|course| {
-        let (run, is_sound) = (course.run, course.divergence.is_none());
+        let (run, is_sound) = (course.run, !course.diverges());
         let boxes = course.times.iter().zip(&course.boxes);
         boxes.map(move |(&time, seen)| SeenMoment { time, run, seen: Cow::Borrowed(seen), is_sound })
     });

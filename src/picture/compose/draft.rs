@@ -90,7 +90,7 @@ impl<'a> Draft<'a> {
         let (view, bodies) = (&scene.view, composer.bodies(run.run));
         let body = bodies.body();
         let greyed = run.shown().status != Status::Ok;
-        let diverged = greyed && run.last_fit.is_none();
+        let diverged = run.has_diverged() && run.last_fit.is_none();
         let run = Shown { run: run.run, snapshot: run.shown() };
         let lens = Lens::new(view, framing, body.dimension(), viewport.map(f64::from), scale.unit);
         // Without positions nothing is drawn.

@@ -45,7 +45,7 @@ pub(super) fn shadow_way(scene: &Scene, history: &History) -> Option<f64> {
         let of_body = |body: &CameraBox| plane.shadow(body.centre - seen.centre, key).length();
         seen.bodies.iter().map(of_body).reduce(f64::max)
     };
-    let sound = history.series.iter().filter(|series| series.divergence.is_none());
+    let sound = history.series.iter().filter(|series| !series.diverges());
     sound.flat_map(|series| series.times.iter().zip(&series.boxes)).filter_map(way).reduce(f64::max)
 }
 

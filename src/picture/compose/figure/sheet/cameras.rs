@@ -10,7 +10,6 @@ use crate::runner::history::NearObstacles;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
-use crate::sim::Status;
 use crate::sim::geometry;
 use glam::DVec2;
 use std::borrow::Cow;
@@ -30,7 +29,7 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
     let mut kinds: Vec<Vec<(usize, Seen)>> = Vec::new();
     for column in columns {
         let moment = |run: &RunFrame| {
-            let (shown, scene, is_sound) = (run.shown(), scene(column), run.snapshot.status == Status::Ok);
+            let (shown, scene, is_sound) = (run.shown(), scene(column), !run.has_diverged());
             let seen = CameraBoxes::new(&scene.view, &scene.runs[run.run].bodies, &shown.position)?;
             Some(SeenMoment { time: shown.time, run: run.run, seen: Cow::Owned(seen), is_sound })
         };
@@ -76,7 +75,7 @@ pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec
     let mut reaches = vec![NearObstacles::default(); scenes.len()];
     for (column, run) in moments.cells.iter().flat_map(|row| row.iter().enumerate()) {
         let at = sheet.columns[column].scene;
-        if run.snapshot.status == Status::Ok {
+        if !run.has_diverged() {
             reaches[at].add(&scenes[at], &scenes[at].runs[run.run], run.snapshot.time, &run.snapshot.position);
         }
     }
