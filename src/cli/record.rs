@@ -17,7 +17,7 @@ use crate::runner::cause::Cause;
 use crate::runner::growing::Growing;
 use crate::runner::{Frames, Next, Progress, Runner, Stored, crossing};
 use crate::scene::{Run, Scene};
-use crate::sim::{self, Diagnostic, State};
+use crate::sim::{self, State};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -316,7 +316,7 @@ impl<'a> Session<'a> {
         };
         let is_drawn = pictures.is_some();
         let ahead = shown.is_some() && is_drawn;
-        let noted = shown.unwrap_or_default().iter().filter_map(Plot::diagnostic).collect();
+        let noted = shown.unwrap_or_default().to_vec();
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
@@ -464,8 +464,8 @@ struct Simulation<'a> {
     ahead: bool,
     /// Whether the time series are known after the last frame.
     notes: bool,
-    /// The diagnostics of the time series.
-    noted: Vec<Diagnostic>,
+    /// The charts of the time series.
+    noted: Vec<Plot>,
     /// Whether stored states are shown, whose causes of divergence are not searched for.
     is_stored: bool,
 }

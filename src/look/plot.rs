@@ -1,6 +1,7 @@
 //! What charts plot.
 
 use crate::reading::coordinates::Coordinates;
+use crate::reading::words::short;
 use crate::sim::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +70,6 @@ pub enum Measure {
     Displacement,
 }
 
-#[cfg(feature = "render")]
 impl Measure {
     /// Its name and its unit.
     pub(crate) fn words(self) -> [&'static str; 2] {
@@ -135,6 +135,21 @@ impl PlotOf {
     /// A quantity of a thing with a name, over time, as a magnitude.
     pub fn new(plot: Measure, of: impl Into<String>) -> Self {
         Self { plot, of: of.into(), on: None, against: None, along: None }
+    }
+
+    /// What it shows, in words: `force of floor on ball`.
+    pub(crate) fn name(&self) -> String {
+        let on = self.on.as_ref().map_or_else(String::new, |body| format!(" on {body}"));
+        format!("{} of {}{on}", self.plot.words()[0], self.of)
+    }
+
+    /// The name of its values in `run.json`.
+    pub(crate) fn key(&self) -> String {
+        let mean = if self.plot == Measure::Displacement { "_mean" } else { "" };
+        let along =
+            self.along.as_ref().map(|along| along.0.iter().map(|&one| short(one)).collect::<Vec<_>>().join(", "));
+        let along = along.map_or_else(String::new, |along| format!(" along [{along}]"));
+        format!("{}{mean}{along}", self.name())
     }
 
     /// The same on one of several bodies.

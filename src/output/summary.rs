@@ -1,6 +1,7 @@
 //! `run.json`: the command, its files and its outcome.
 
 use super::{Extremes, OutputError, Timings, state_digest, write_whole};
+use crate::look::Plot;
 use crate::runner::cause::Cause;
 use crate::runner::{Frame, TableRow, TimeSeries};
 use crate::scene::{AtRest, Rest, Run, Scene};
@@ -275,11 +276,17 @@ impl Summary {
         }
     }
 
-    /// Records the values of some diagnostics in time series.
-    pub(crate) fn note_series<'s>(&mut self, wanted: &[Diagnostic], series: impl IntoIterator<Item = &'s TimeSeries>) {
+    /// Records the values of some charts over time in time series.
+    pub(crate) fn note_series<'s>(&mut self, charts: &[Plot], series: impl IntoIterator<Item = &'s TimeSeries>) {
+        let wanted: Vec<_> = charts.iter().filter_map(Plot::diagnostic).collect();
         for (summary, series) in self.runs.iter_mut().zip(series) {
             let moments = series.times.iter().zip(&series.diagnostics);
-            moments.for_each(|(&time, all)| summary.extremes.note(wanted, time, all));
+            moments.for_each(|(&time, all)| summary.extremes.note(&wanted, time, all));
+            for (of, readings) in charts.iter().filter_map(Plot::of).zip(&series.readings) {
+                // Along the path of what moves the direction has no name.
+                let moments = series.times.iter().zip(readings).filter(|_| of.against.is_none());
+                moments.for_each(|(&time, one)| summary.extremes.note_one(&of.key(), time, one.value));
+            }
         }
     }
 

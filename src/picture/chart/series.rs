@@ -220,10 +220,7 @@ pub(super) fn title(plot: &Plot, scene: &Scene) -> String {
         Plot::Diagnostic(diagnostic) | Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
             name(*diagnostic, scene).to_owned()
         }
-        Plot::Of(of) => {
-            let on = of.on.as_ref().map_or_else(String::new, |body| format!(" on {body}"));
-            format!("{} of {}{on}", of.plot.words()[0], of.of)
-        }
+        Plot::Of(of) => of.name(),
     };
     if let Some(first) = name.get_mut(..1) {
         first.make_ascii_uppercase();
