@@ -107,10 +107,9 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
 
 /// Prints the warnings of a scene.
 pub(super) fn warn(file: &Path, scene: &Scene) {
-    let found = scene.warnings.clone();
-    if !found.is_empty() {
-        let total = found.len();
-        let _ = writeln!(io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
+    for one in &scene.warnings {
+        let mistakes = Mistakes { file: file.display().to_string(), found: vec![one.clone()], total: 1 };
+        let _ = writeln!(io::stderr(), "warning: {mistakes}");
     }
 }
 

@@ -136,6 +136,8 @@ fn what_begins_after_the_end() {
     let rising = "`load[0]` is never whole: it rises until 5.9 s, and the scene ends at 1 s";
     assert_eq!(load("from = 0.9\nramp = 5"), [rising]);
     assert_eq!(load("from = 0.5\nramp = 0.5"), [""; 0]);
+    let ends = "`load[0]` is never whole: it rises until 0.5 s, and it ends at 0.2 s";
+    assert_eq!(load("ramp = 0.5\nuntil = 0.2"), [ends]);
     assert_eq!(load("from = 1\nramp = 5"), late("load[0]", "1"));
     assert_eq!(load("keys = [{ time = 2, share = 0 }, { time = 3, share = 1 }]"), late("load[0]", "2"));
     assert_eq!(load("keys = [{ time = 2, share = 1 }, { time = 3, share = 0 }]"), [""; 0]);

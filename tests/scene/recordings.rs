@@ -761,7 +761,7 @@ fn displacements_of_points_at_rest_are_added_and_told() {
     };
     assert_eq!(course(&at(&other).unwrap_or_else(|error| panic!("{error}")), 2), [0.0, 0.5]);
     let error = at(&tetrahedron(10, 0.0)).expect_err("no array").to_string();
-    assert!(error.contains("b.vtu has no `displacement` for each point, and files of other moments have"), "{error}");
+    assert!(error.contains("b.vtu` has no `displacement` for each point, and files of other moments have"), "{error}");
     // A body of millimetres.
     let long = String::from_utf8(tetrahedron(10, 0.0))
         .unwrap()

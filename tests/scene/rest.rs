@@ -210,6 +210,15 @@ fn a_load_as_small_as_round_off_is_told() {
     assert!(scene.runs[0].rest.is_some_and(|rest| rest.residual > 0.02));
 }
 
+/// Round-off of a body without a load is no share of it.
+#[test]
+fn no_load_at_the_start_is_no_small_one() {
+    let load = "load = [{ force = [0, 4, 0], nodes = 'bottom', ramp = 0.5 }]\n";
+    let scene = good(&HANGING.replace("gravity = [0, -9.8, 0]\n", load));
+    assert_eq!(scene.warnings.len(), 0, "{}", scene.warnings[0].message);
+    assert!(scene.runs[0].rest.is_some_and(|rest| rest.residual < 1e-9));
+}
+
 /// The forces that hold a body at rest are known from the start.
 #[test]
 fn what_starts_at_rest_has_reactions_there() {

@@ -182,7 +182,7 @@ impl Forces {
         let first = *self.first.get_or_insert(left);
         let loads = self.world.loads(position).into_iter().zip(&self.is_held);
         let load = size(loads.filter(|(_, is_held)| !**is_held).map(|(force, _)| force));
-        let load = if load > 0.0 { load } else { first };
+        let load = if load > 0.0 { load } else { first.max(self.least) };
         // Nothing is left of no load.
         [if left > 0.0 { left / load } else { 0.0 }, left / self.least.max(load)]
     }

@@ -157,10 +157,14 @@ fn warn_of_rising_loads(scene: &Scene, typed: &Typed<'_>, report: &mut Collector
         if scene.duration == 0.0 && is_zero {
             let message = format!("`{name}` does nothing: it is 0 at the start, and the scene has no duration");
             report.warn(&path, message, "leave out `from`, `ramp` and `keys`");
-        } else if let Some(end) = ramp.filter(|&end| end > scene.duration && load.from < scene.duration) {
-            let [end, last] = [end, scene.duration].map(short);
-            let message = format!("`{name}` is never whole: it rises until {end} s, and the scene ends at {last} s");
-            report.warn(&path, message, "make `ramp` shorter, or `duration` longer");
+        } else if let Some(end) = ramp.filter(|_| load.from < scene.duration) {
+            let until = load.until.unwrap_or(f64::INFINITY);
+            let (what, last) = if until < scene.duration { ("it", until) } else { ("the scene", scene.duration) };
+            if end > last {
+                let [end, last] = [end, last].map(short);
+                let message = format!("`{name}` is never whole: it rises until {end} s, and {what} ends at {last} s");
+                report.warn(&path, message, "make `ramp` shorter, or let the load and the scene last longer");
+            }
         }
     }
 }

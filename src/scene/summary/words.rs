@@ -32,6 +32,9 @@ impl Scene {
                 let span = span(during.start, during.end, self.duration);
                 let rise = match keys[..] {
                     [] => String::new(),
+                    [[_, first], [end, last]] if first == 0.0 && last == 1.0 && end > during.end => {
+                        ", never whole".to_owned()
+                    }
                     [[_, first], [end, last]] if first == 0.0 && last == 1.0 => {
                         format!(", whole from {} s on", short(end))
                     }
