@@ -13,7 +13,10 @@ pub(super) struct Extent {
 impl Extent {
     /// The box around all points of a surface, whose nodes are at these places (m).
     pub(super) fn of(surface: &Surface, at: &[DVec3]) -> Self {
-        Self::around(surface.nodes.iter().map(|&node| at[node as usize]))
+        match surface.lever > 1.0 {
+            true => Self::around(surface.places(at)),
+            false => Self::around(surface.nodes.iter().map(|&node| at[node as usize])),
+        }
     }
 
     pub(super) fn around(points: impl Iterator<Item = DVec3>) -> Self {

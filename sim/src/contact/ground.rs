@@ -20,8 +20,6 @@ pub(super) struct Ground {
     number: usize,
     obstacle: Obstacle,
     law: Law,
-    /// How much farther a point moves at most than the nodes that it follows: the greatest sum of magnitudes of weights.
-    lever: f64,
     /// What is known of its points. It only saves work.
     known: Near,
 }
@@ -53,12 +51,9 @@ impl Ground {
     /// A body, which has a carried surface, and an obstacle; `None` if that is not a half-space.
     pub(super) fn new(body: usize, surface: &Surface, (number, obstacle): (usize, &Obstacle)) -> Option<Self> {
         obstacle.half_space(0.0)?;
-        let points = 0..surface.points.len();
-        let sums = points.map(|point| surface.points.of(point).1.iter().map(|weight| weight.abs()).sum::<f64>());
         let &Obstacle { restitution, friction, .. } = obstacle;
         let law = Law { gap: surface.thickness, restitution, friction };
-        let (obstacle, lever) = (obstacle.clone(), sums.fold(1.0, f64::max));
-        Some(Self { body, number, obstacle, law, lever, known: Near::default() })
+        Some(Self { body, number, obstacle: obstacle.clone(), law, known: Near::default() })
     }
 
     fn plane(&self, time: f64) -> Plane {
@@ -68,13 +63,12 @@ impl Ground {
 
     /// The way (m) for which the body surely touches nothing; `None` if that is not known, as beside planes that move.
     pub(super) fn clear(&self, surfaces: &[Surface], position: &[DVec3]) -> Option<f64> {
-        /// Round-off of sums of weights.
-        const ROUND: f64 = 1e-9;
-        if !self.obstacle.is_still() || self.lever > 1.0 + ROUND {
+        let surface = &surfaces[self.body];
+        if !self.obstacle.is_still() || surface.lever > 1.0 {
             return None;
         }
         let plane = self.plane(0.0);
-        let heights = surfaces[self.body].nodes.iter().map(|&node| plane.above(position[node as usize]));
+        let heights = surface.nodes.iter().map(|&node| plane.above(position[node as usize]));
         Some(heights.fold(f64::INFINITY, f64::min) - self.law.gap)
     }
 
@@ -82,16 +76,16 @@ impl Ground {
     fn list(&mut self, surface: &Surface, [start, end]: [&[DVec3]; 2], plane: Plane) {
         /// A share of the thickness, and of the way of a step.
         const SKIN: [f64; 2] = [20.0, 16.0];
-        let Self { known: Near { points, heights, skin }, lever, law, obstacle, .. } = self;
+        let Self { known: Near { points, heights, skin }, law, obstacle, .. } = self;
         let height = |position: &[DVec3], node: u32| plane.above(position[node as usize]);
         let nodes = &surface.nodes;
         let far = |way: f64, now: f64, other: f64| way.max((now - other).abs());
         let ahead = nodes.iter().fold(0.0, |way, &node| far(way, height(start, node), height(end, node)));
         let since = nodes.iter().zip(&*heights).fold(0.0, |way, (&node, &then)| far(way, height(start, node), then));
-        if obstacle.is_still() && !heights.is_empty() && *lever * (since + ahead) <= *skin {
+        if obstacle.is_still() && !heights.is_empty() && surface.lever * (since + ahead) <= *skin {
             return;
         }
-        *skin = (SKIN[0] * surface.thickness).max(SKIN[1] * *lever * ahead);
+        *skin = (SKIN[0] * surface.thickness).max(SKIN[1] * surface.lever * ahead);
         let reach = if obstacle.is_still() { law.gap + *skin } else { f64::INFINITY };
         let is_near = |&point: &u32| plane.above(surface.points.place(point as usize, start)) <= reach;
         points.clear();

@@ -61,7 +61,8 @@ impl Stage {
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let quickest = self.obstacles.iter().map(|solid| solid.greatest_speed).fold(0.0, f64::max);
         let widest = self.widest_gap();
-        let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN);
+        let lever = self.surfaces.iter().map(|surface| surface.lever).fold(1.0, f64::max);
+        let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN * lever);
         order.clear();
         order.extend(0..extents.len());
         order.sort_unstable_by(|&one, &other| {

@@ -50,10 +50,15 @@ pub(super) struct Shown {
 }
 
 impl Shown {
-    /// Adds what nodes have moved from their places at the start of the last step to those of this one, and sees where they go in it (m).
-    pub(super) fn go(&mut self, [last, start, end]: [&[DVec3]; 3]) {
+    /// Adds what points of a surface have moved from their places at the start of the last step to those of this one, and sees where they go
+    /// in it, from the places of its nodes (m).
+    pub(super) fn go(&mut self, surface: &Surface, [last, start, end]: [&[DVec3]; 3]) {
         self.points.clear();
-        (self.since, self.ahead) = (Way::of(last, start), Way::of(start, end));
+        let way = |from, to| {
+            let Way { drift, spread } = Way::of(from, to);
+            Way { drift, spread: surface.lever * spread }
+        };
+        (self.since, self.ahead) = (way(last, start), way(start, end));
         self.way += self.since.spread;
     }
 

@@ -53,7 +53,8 @@ impl Stage {
         }
         shown.resize(self.surfaces.len(), Shown::default());
         crew.each_of(shown, |number, shown| {
-            shown.go([&*last, &ends.start, &ends.position].map(|all| &all[self.surfaces[number].range()]));
+            let surface = &self.surfaces[number];
+            shown.go(surface, [&*last, &ends.start, &ends.position].map(|all| &all[surface.range()]));
         });
         let longest = |way: fn(&Shown) -> Way| shown.iter().map(|shown| way(shown).length()).fold(0.0, f64::max);
         let [since, ahead] = [longest(|shown| shown.since), longest(|shown| shown.ahead)];

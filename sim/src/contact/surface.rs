@@ -27,6 +27,8 @@ pub(crate) struct Surface {
     pub(super) rings: IndexLists,
     /// The nodes, each once.
     pub(super) nodes: Vec<u32>,
+    /// The greatest sum of magnitudes of the weights of a point. Above 1, points may stand outside of all nodes, and move so many times as far as these.
+    pub(super) lever: f64,
     /// How facets and edges follow the nodes, in surfaces that are [ready](Self::ready).
     pub(super) of_facets: Spread,
     pub(super) of_edges: Spread,
@@ -150,6 +152,8 @@ impl Surface {
 
     /// A surface of points and facets with so many corners; `bars` are edges without a triangle.
     pub(super) fn new(points: Weights, corners: Vec<([u32; 3], u32)>, bars: &[[u32; 2]]) -> Self {
+        /// Round-off of sums of weights.
+        const ROUND: f64 = 1e-9;
         let mut found: HashMap<[u32; 2], usize> = HashMap::new();
         let (mut edges, mut wings): (Vec<[u32; 2]>, Vec<Vec<u32>>) = Default::default();
         let mut rings = vec![Vec::new(); points.len()];
@@ -190,6 +194,8 @@ impl Surface {
         let mut nodes: Vec<u32> = (0..points.len()).flat_map(|point| points.of(point).0.iter().copied()).collect();
         nodes.sort_unstable();
         nodes.dedup();
+        let sums = (0..points.len()).map(|point| points.of(point).1.iter().map(|weight| weight.abs()).sum::<f64>());
+        let lever = sums.filter(|&sum| sum > 1.0 + ROUND).fold(1.0, f64::max);
         let lists = |lists: &[Vec<u32>]| lists.iter().map(Vec::as_slice).collect();
         Self {
             points,
@@ -198,6 +204,7 @@ impl Surface {
             wings: lists(&wings),
             rings: lists(&rings),
             nodes,
+            lever,
             of_facets: Spread::default(),
             of_edges: Spread::default(),
             bounding: Vec::new(),

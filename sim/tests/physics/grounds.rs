@@ -160,3 +160,42 @@ fn a_plate_that_moves_aside_takes_the_surface_along() {
     let speed = carried.state().velocity.iter().map(|speed| speed.x).sum::<f64>() / 27.0;
     assert!((speed - 0.5).abs() < 0.05, "{speed}");
 }
+
+/// A cell that carries a cube of one and a half times its size.
+fn protruding() -> Arc<Body> {
+    const TIMES: f64 = 1.5;
+    let cage = block([1; 3]);
+    let signs = |corner: u32| DVec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 }));
+    let rest = (0..8).map(|corner| 0.5 * TIMES * SIDE * signs(corner)).collect();
+    let mut weights = Weights::default();
+    for corner in 0..8 {
+        let share = |node: u32| (0.5 * (1.0 + TIMES * signs(corner) * signs(node))).to_array().iter().product();
+        weights.push(&[0, 1, 2, 3, 4, 5, 6, 7], &[0, 1, 2, 3, 4, 5, 6, 7].map(share));
+    }
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    Arc::new(Body::clone(&cage).with_carried(Arc::new(Carried { rest, triangles, weights })).expect("a body"))
+}
+
+/// Fillings that cut cells stand inside of their surface in places. Boxes around their nodes would let bodies run alone into each other.
+#[test]
+fn surfaces_that_stand_out_of_their_cages_meet_in_time() {
+    for kernel in [Kernel::Fast, Kernel::Reference] {
+        let bodies = [-1.0, 1.0].map(|sign| {
+            let at = 0.9 * SIDE * sign * DVec3::X;
+            (protruding(), Placed { at, turned: DQuat::IDENTITY, speed: -0.05 * sign * DVec3::X })
+        });
+        let around = Surroundings { contacts: Some(Contacts::default()), ..Surroundings::default() };
+        let mut world = by(Integrator::SemiImplicitEuler, kernel, &bodies, 2e4, 0.02, around);
+        for _ in 0..100 {
+            world.advance(10);
+            assert_eq!(world.crossings(), Some(Vec::new()), "{kernel:?}");
+        }
+        let [left, right] = [0..8, 8..16].map(|nodes| {
+            let State { position, velocity, .. } = world.state();
+            (position[nodes.clone()].iter().sum::<DVec3>() / 8.0, velocity[nodes].iter().sum::<DVec3>() / 8.0)
+        });
+        assert!(right.0.x - left.0.x > 1.45 * SIDE, "{kernel:?}: {} {}", left.0, right.0);
+        assert!(left.1.x < 1e-3 && right.1.x > -1e-3, "{kernel:?}: {} {}", left.1, right.1);
+    }
+}
