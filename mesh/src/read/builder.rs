@@ -2,7 +2,7 @@
 
 mod finish;
 
-use super::order::along;
+use super::cells::along;
 use super::source::{Coding, Source};
 use super::{CellKind, Cells, Limits, ReadError};
 use glam::DVec3;

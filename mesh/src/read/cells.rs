@@ -5,6 +5,15 @@ use crate::weld::joined;
 use glam::DVec3;
 use localshape_sim::{ElementKind, IndexLists};
 
+/// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
+/// [`localshape_sim::Solids::Ordered`]. It is its own inverse.
+const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// The corners of a hexahedron that a file lists around one side and then around the other, x fastest, then y, then z.
+pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
+    AROUND.map(|place| corners[place])
+}
+
 /// The kind of a cell in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CellKind {

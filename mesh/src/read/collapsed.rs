@@ -5,6 +5,9 @@ use super::kinds;
 use glam::DVec3;
 use localshape_sim::ElementKind;
 
+/// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
+pub(super) const FLAT: f64 = 1e-12;
+
 /// The faces of a cell of a kind that may be a simpler one, as places in its list, counter-clockwise from outside.
 fn sides(kind: ElementKind) -> &'static [&'static [usize]] {
     match kind {
@@ -72,7 +75,7 @@ fn tetrahedra(faces: &[Vec<u32>], different: &[u32], points: &[DVec3]) -> Vec<(E
             all.extend((2..face.len()).map(|place| [corner(0), corner(place - 1), corner(place), apex]));
         }
         let size = all.iter().map(|cell| six(cell).abs()).sum::<f64>();
-        all.retain(|cell| six(cell).abs() > super::order::FLAT * size);
+        all.retain(|cell| six(cell).abs() > FLAT * size);
         let is_inner = |sign: f64| all.iter().all(|cell| six(cell) * sign > 0.0);
         (is_inner(1.0) || is_inner(-1.0)).then_some(all)
     };

@@ -1,17 +1,12 @@
 //! Cells of files in the order of elements.
 
-use super::{ReadError, collapsed};
+use super::ReadError;
+use super::cells::along;
+use super::collapsed::{self, FLAT};
 use glam::DVec3;
 use localshape_sim::geometry::volume_by_faces;
 use localshape_sim::{Dimension, ElementKind, IndexLists};
 use std::collections::HashSet;
-
-/// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
-pub(super) const FLAT: f64 = 1e-12;
-
-/// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
-/// [`localshape_sim::Solids::Ordered`]. It is its own inverse.
-const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// The elements of a volume.
 pub(super) struct Parts {
@@ -143,11 +138,6 @@ impl Parts {
         });
         Ok((self.cells, self.turned, notes))
     }
-}
-
-/// The corners of a hexahedron that a file lists around one side and then around the other, x fastest, then y, then z.
-pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
-    AROUND.map(|place| corners[place])
 }
 
 fn turn(kind: ElementKind, cell: &mut [u32]) {
