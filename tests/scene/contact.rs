@@ -103,6 +103,14 @@ fn names_of_pairs() {
         "[[contact.pair]]\nof = ['cube', 'bar']\nfriction = 1\n[[contact.pair]]\nof = ['bar', 'cube']\nfriction = 2",
         "5:6 \"bar\" and \"cube\" are a pair already, `contact.pair[0]` keep one of the two",
     );
+    let apart = WORLD.replace("'Both'", "'Bar', bodies = ['bar']");
+    let pair = "[[contact.pair]]\nof = ['cube', 'bar']\nfriction = 1";
+    let lines = apart.lines().count();
+    expect(
+        &bad(&format!("{apart}{pair}")),
+        lines,
+        "2:6 the pair changes nothing, as no run simulates \"bar\" and \"cube\"",
+    );
     case("[[contact.pair]]\nof = ['cube', 'bar']", "2:6 the pair of \"cube\" and \"bar\" changes nothing");
     case("[[contact.pair]]\nof = ['cube']\nfriction = 1", "2:6 `contact.pair[0].of` has 1 entry; expected");
     let twice = |from: &str, to: &str, expected: &str| expect(&bad(&WORLD.replace(from, to)), 0, expected);
@@ -146,6 +154,32 @@ fn settings_of_surfaces_beside_nodes() {
     expect(&bad(&of_body), 0, &format!("7:21 {}", idle("body[0].self_contact")));
 }
 
+/// Surfaces have the friction of paths; nodes have that of an obstacle.
+#[test]
+fn friction_of_an_obstacle_that_surfaces_meet() {
+    let of =
+        |friction_of: &str| WORLD.replace("name = 'ball',", &format!("name = 'ball', friction = 0.5{friction_of},"));
+    good(&of(""));
+    let idle =
+        "12:55 `friction_of` has no effect, as surfaces meet this obstacle: their friction acts on the path remove it";
+    expect(&bad(&of(", friction_of = 'velocity'")), 0, idle);
+    good(&format!("{}contact.rule = 'nodes'", of(", friction_of = 'velocity'")));
+}
+
+/// A body of two layers at one place, whose nodes are not the same.
+#[test]
+fn layers_of_one_body_at_one_place() {
+    let layers = "run = [{ name = 'One', model = { kind = 'shape-based', stiffness = 1e3 } }]
+time.duration = 0.1
+[body]
+nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, -1]]
+elements = [[0, 1, 2, 3], [4, 6, 5, 7]]
+";
+    good(layers);
+    let told = "3:1 the body touches itself at the start, at node 0: contact cannot part them move these nodes apart, join them";
+    expect(&bad(&format!("{layers}self_contact = true")), 0, told);
+}
+
 /// Contact keeps surfaces apart, but cannot part them.
 #[test]
 fn bodies_that_overlap_or_touch_at_the_start() {
@@ -164,11 +198,20 @@ fn bodies_that_overlap_or_touch_at_the_start() {
     for to in ["[0.26, 0, 0]", "[0, 0.11, 0]", "[0, 0, -0.21]"] {
         good(&moved(to));
     }
+    // Nearer than the distance that they keep.
+    let thrown = "8:5 \"bar\" and \"cube\" are 1 mm apart at the start, at node 5 of \"bar\": contact keeps them 8.05 mm apart, and the first \
+                  step would throw them there move one of them, with `offset` or `lowest`, write contact.separate = true, or give their";
+    expect(&bad(&moved("[0.251, 0, 0]")), 0, thrown);
+    good(&format!("{}contact.separate = true", moved("[0.251, 0, 0]")));
+    good(&format!("{}[[contact.pair]]\nof = ['bar', 'cube']\nthickness = 0.001", moved("[0.251, 0, 0]")));
     // Its upper side is at the height of the bar's lower one.
     let stone = |centre: &str| WORLD.replace("[0, -0.8, 0]", centre);
     let message = "13:5 the body \"bar\" touches this box at the start, at node 1 move one of them";
     expect(&bad(&stone("[0, -0.05, 0]")), 0, message);
     good(&stone("[0, -0.06, 0]"));
+    let near =
+        "13:5 the body \"bar\" is 100 µm from this box at the start, at node 1: contact keeps them 1.98 mm apart";
+    expect(&bad(&stone("[0, -0.0501, 0]")), 0, near);
     let deep = "13:5 the body \"bar\" reaches 10 mm into this box at the start, at node";
     expect(&bad(&stone("[0, -0.04, 0]")), 0, deep);
 }
@@ -207,6 +250,13 @@ fn steps_in_which_nodes_move_far_are_told() {
         "nodes of \"Both\" move 80 mm in a step relative to others, at 80 m/s at the start, and a cell has 100 mm";
     assert!(found[0].message.starts_with(expected), "{found:?}");
     assert_eq!(fast("40", "1e-3"), []);
+    let pulled = WORLD.replace("duration = 1", "duration = 1, step = 1e-3")
+        + "[[grab]]\nbody = 'cube'\nnodes = 'right'\npath.keys = [{ time = 0 }, { time = 0.1, shift = [-6, 0, 0] }]\n";
+    let told = good(&pulled)
+        .warnings
+        .iter()
+        .any(|one| one.message.contains("along its path") && one.message.contains("sideways"));
+    assert!(told, "{:?}", good(&pulled).warnings);
     assert_eq!(fast("80", "5e-4"), []);
 }
 

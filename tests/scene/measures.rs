@@ -89,7 +89,7 @@ fn what_is_measured_is_what_happens() {
 fn forces_between_two_bodies_are_charts() {
     let scene = "gravity = [0, -10, 0]\ntime = { duration = 1, frames_per_second = 10, step = 1e-3 }\nmass_damping = 20\n\
                  body = [{ name = 'low', lattice = { cells = [2, 1, 2], side = 0.1 }, density = 100, lowest = 1e-3 },\n\
-                 { name = 'high', lattice = { cells = [1, 1, 1], side = 0.1 }, density = 100, lowest = 0.102 }]\n\
+                 { name = 'high', lattice = { cells = [1, 1, 1], side = 0.1 }, density = 100, lowest = 0.106 }]\n\
                  run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]\n\
                  obstacle = [{ kind = 'floor', name = 'ground' }]\n";
     let last = |of: &str, on: &str| {

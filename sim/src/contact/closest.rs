@@ -65,32 +65,14 @@ pub(super) fn of_segments(one: [DVec3; 2], other: [DVec3; 2]) -> [f64; 2] {
     [first, second].map(|share| share.to_array()[0])
 }
 
-/// Whether a way from a closest point leads away from the surface there: towards none of the `around` corners of the faces that meet at the
-/// point, but for a slack.
-///
-/// Where a surface is nearly flat along an edge that presses on it, each feature is the nearest in turn, from step to step, and the others go
-/// through meanwhile. With the slack all of them count. One that counts without need does no harm: its points are near each other, too.
-///
-/// Returns by how much (m) the way leads towards one of them: zero if it leads away.
-pub(super) fn towards(way: DVec3, from: DVec3, around: impl Iterator<Item = DVec3> + Clone) -> f64 {
-    /// The cosine of the least angle between the way and a face, 73°. With 84° some corners that hit each other still crossed.
-    const SLACK: f64 = 0.3;
-    let whole = SLACK * SLACK * way.length_squared();
-    let leads_away = |corner: DVec3| {
+/// How far (m) a way from a closest point leads along the faces that meet there, towards one of their corners `around`; zero if it leads away
+/// from all of them, as at a local minimum of the distance.
+pub(super) fn lean(way: DVec3, from: DVec3, around: impl Iterator<Item = DVec3>) -> f64 {
+    let squared = |corner: DVec3| {
         let (direction, along) = (corner - from, way.dot(corner - from));
-        along <= 0.0 || along * along <= whole * direction.length_squared()
+        if along > 0.0 { along * along / direction.length_squared() } else { 0.0 }
     };
-    if around.clone().all(leads_away) {
-        return 0.0;
-    }
-    let most = around.fold(0.0, |most: f64, corner| most.max(along(way, corner - from)));
-    (most - SLACK * way.length()).max(f64::MIN_POSITIVE)
-}
-
-/// The length of a way along a direction (m).
-pub(super) fn along(way: DVec3, direction: DVec3) -> f64 {
-    let length = direction.length();
-    if length > 0.0 { direction.dot(way) / length } else { 0.0 }
+    around.map(squared).fold(0.0, f64::max).sqrt()
 }
 
 #[cfg(test)]
@@ -151,11 +133,10 @@ mod tests {
     /// Above an edge of a roof the way up leads away, the way to the side does not.
     #[test]
     fn a_way_leads_away_from_convex_edges_only() {
-        let sides = [DVec3::new(1.0, -0.5, 0.0), DVec3::new(-1.0, -0.5, 0.0)];
-        let away = |way| towards(way, DVec3::ZERO, sides.into_iter()) == 0.0;
-        assert!(away(DVec3::Y) && away(DVec3::new(0.2, 1.0, 0.0)) && away(DVec3::new(0.5, 1.0, 0.0)));
-        assert!(!away(DVec3::X) && !away(-DVec3::Y) && !away(DVec3::new(1.5, 1.0, 0.0)));
-        // A flat place: both sides count, to round-off.
-        assert_eq!(towards(DVec3::Y, DVec3::ZERO, [DVec3::new(1.0, 1e-16, 0.0), -DVec3::X].into_iter()), 0.0);
+        let sides = [DVec3::new(1.0, -0.75, 0.0), DVec3::new(-1.0, -0.75, 0.0)];
+        let lean = |way| lean(way, DVec3::ZERO, sides.into_iter());
+        assert_eq!([DVec3::Y, DVec3::new(0.75, 1.0, 0.0)].map(lean), [0.0; 2]);
+        // Down the slope and below it.
+        assert_eq!([DVec3::X, DVec3::new(1.0, -0.75, 0.0), -DVec3::Y].map(lean), [0.8, 1.25, 0.6]);
     }
 }

@@ -14,13 +14,17 @@ pub(crate) fn crossings([one, other]: [Placed<'_>; 2]) -> Vec<[u32; 2]> {
     let is_same = std::ptr::eq(one.surface, other.surface);
     found.retain(|&[first, second]| {
         let (mine, theirs) = (Corners::of(one, first), Corners::of(other, second));
-        let is_joined = || one.used(first).iter().any(|corner| other.used(second).contains(corner));
-        if is_same && (first >= second || is_joined()) {
+        if is_same && (first >= second || are_joined(one, [first, second])) {
             return false;
         }
         mine.crosses(&theirs) || radius > 0.0 && mine.distance(&theirs) < radius
     });
     found
+}
+
+/// Whether two facets of a surface have a corner in common.
+pub(super) fn are_joined(of: Placed<'_>, [first, second]: [u32; 2]) -> bool {
+    of.used(first).iter().any(|corner| of.used(second).contains(corner))
 }
 
 /// The pairs of facets whose boxes are nearer than a reach (m), in order.

@@ -30,10 +30,26 @@ pub(super) struct Closest {
     /// Zero for a contact: a local minimum of the distance that no other feature counts. Otherwise how far points of the features have to move
     /// at least (m) until it can be one.
     pub(super) rests: f64,
+    /// Whether the distance is a local minimum on both surfaces, and not only nearly so.
+    pub(super) is_least: bool,
 }
 
 /// A way of one point changes what depends on lengths of features by at most so many times as much.
 const LEVER: f64 = 6.0;
+
+/// Whether contact counts at closest points whose way leads by `lean` (m) along a face that meets there: how far (m) the way leads too far, and
+/// whether the distance is a local minimum.
+///
+/// Where a surface is nearly flat along an edge that presses on it, each feature is the nearest in turn, from step to step, and the others go
+/// through meanwhile. So all count whose way is steeper than 46° to the faces.
+fn counts(lean: f64, way: DVec3) -> (f64, bool) {
+    /// The cosines of the least angles between the way and a face.
+    const SLACK: f64 = 0.7;
+    const LEAST: f64 = 0.02;
+    let length = way.length();
+    let beyond = lean - SLACK * length;
+    (if beyond > 0.0 { beyond } else { 0.0 }, lean <= LEAST * length)
+}
 
 impl Kind {
     /// Those that are resolved in the same pass.
@@ -86,10 +102,10 @@ fn point_facet(
     let Placed { surface, .. } = other;
     let facet = &surface.facets[facet as usize];
     let (here, place) = (one.point(point), |corner: u32| other.point(corner));
-    let closest = |rests: f64| Closest { here, way, shares: [[1.0, 0.0, 0.0], shares], rests };
+    let closest = |(rests, is_least)| Closest { here, way, shares: [[1.0, 0.0, 0.0], shares], rests, is_least };
     let on = On::of(part);
     if on == On::Inside {
-        return closest(0.0);
+        return closest((0.0, true));
     }
     let corners = facet.corners.map(place);
     let there: DVec3 = corners.iter().zip(shares).map(|(&corner, share)| corner * share).sum();
@@ -103,13 +119,15 @@ fn point_facet(
         let ends = on.iter().filter(|_| on.len() > 1).map(|&end| corners[end].distance_squared(there));
         ends.chain(inwards).fold(f64::INFINITY, f64::min).sqrt()
     };
-    let rest = |counts: bool, around: &[u32], on: &[usize]| {
-        let towards =
-            if counts { closest::towards(way, there, around.iter().map(|&at| place(at))) } else { f64::INFINITY };
-        if towards == 0.0 { 0.0 } else { (towards.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE) }
+    let rest = |is_owned: bool, around: &[u32], on: &[usize]| {
+        let ring = one.surface.rings[point as usize].iter().map(|&at| one.point(at));
+        let lean =
+            || closest::lean(way, there, around.iter().map(|&at| place(at))).max(closest::lean(-way, here, ring));
+        let (beyond, is_least) = if is_owned { counts(lean(), way) } else { (f64::INFINITY, false) };
+        (if beyond > 0.0 { (beyond.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE) } else { 0.0 }, is_least)
     };
     closest(match on {
-        On::Inside => 0.0,
+        On::Inside => (0.0, true),
         On::Side(side) => {
             let wings = &surface.wings[facet.sides[side] as usize];
             rest(facet.owns_sides[side], wings, &[side, (side + 1) % 3])
@@ -131,16 +149,16 @@ fn edges([one, other]: [Placed<'_>; 2], [first, second]: [u32; 2], found: &Found
     let theirs = other.surface.edges[second as usize].map(|end| other.point(end));
     let (here, there) = (mine[0].lerp(mine[1], s), theirs[0].lerp(theirs[1], t));
     let shares = [s, t].map(|share| [1.0 - share, share, 0.0]);
-    let towards = |placed: Placed<'_>, edge: u32, from: DVec3, way: DVec3| {
-        closest::towards(way, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
+    let lean = |placed: Placed<'_>, edge: u32, from: DVec3, way: DVec3| {
+        closest::lean(way, from, placed.surface.wings[edge as usize].iter().map(|&corner| placed.point(corner)))
     };
     let is_inside = |share: f64| share > 0.0 && share < 1.0;
-    let beyond = if is_inside(s) && is_inside(t) && sine > LEAST_SINE {
-        towards(one, first, here, -way).max(towards(other, second, there, way))
+    let (beyond, is_least) = if is_inside(s) && is_inside(t) && sine > LEAST_SINE {
+        counts(lean(one, first, here, -way).max(lean(other, second, there, way)), way)
     } else {
-        past_ends(mine, theirs, sine).max(f64::MIN_POSITIVE)
+        (past_ends(mine, theirs, sine).max(f64::MIN_POSITIVE), false)
     };
-    Closest { here, way, shares, rests: beyond / LEVER }
+    Closest { here, way, shares, rests: beyond / LEVER, is_least }
 }
 
 /// How far the ends of two segments have to move (m) until their lines are closest between them; zero if nearly parallel. `sine` is the squared

@@ -1,6 +1,6 @@
 //! Bodies and obstacles that overlap or touch: contact of surfaces keeps them apart, but cannot part them.
 
-use super::cross::{Corners, near_facets};
+use super::cross::{Corners, are_joined, near_facets};
 use super::extent::Extent;
 use super::inside::inside;
 use super::shape::ROUND_OFF;
@@ -10,15 +10,18 @@ use crate::body::Body;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Two bodies, or a body and an obstacle, that overlap or touch.
+/// Two bodies, or a body and an obstacle, that overlap, touch, or are much nearer than the distance that they keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
     /// The two: the body with the lower number first, obstacles last. They are the same where the surface of a body crosses itself.
     pub of: [Side; 2],
     /// The node of a body, among those of all bodies, that lies deepest, or nearest to the deepest place.
     pub node: usize,
-    /// How far (m) the deepest point, side or facet has to move at least until it does not overlap; zero for what touches.
+    /// How far (m) the deepest point, side or facet has to move at least until it does not overlap; zero for what touches. Negative for what is
+    /// so far apart.
     pub depth: f64,
+    /// The distance (m) that contact keeps between the two, beside the radius of an obstacle.
+    pub keeps: f64,
 }
 
 /// The surfaces of bodies and of obstacles, to ask what overlaps.
@@ -74,22 +77,27 @@ impl Surfaces {
     }
 
     /// What overlaps or touches among the pairs that are `wanted`, in order, with positions of all nodes (m), and obstacles as they are
-    /// at a time (s). What touches a round obstacle or a half-space does not count: the way out is known there.
+    /// at a time (s). What is nearer than nine tenths of the distance that it keeps counts, too: contact would throw it apart. What touches a round
+    /// obstacle or a half-space does not count: the way out is known there.
     pub fn overlaps(&self, position: &[DVec3], time: f64, wanted: impl Fn([Side; 2]) -> bool) -> Vec<Overlap> {
+        const NEAR: f64 = 0.9;
         let moment = self.place(position, time);
         let mut found = Vec::new();
         for one in 0..self.bodies.len() {
             for other in one..self.surfaces.len() {
                 let [mine, theirs] = [one, other].map(|number| self.placed(&moment, number));
-                let round = self.round_off(&moment, [one, other]);
-                if moment.extents[one].distance(&moment.extents[other]) > theirs.radius() + round
+                let (round, keeps) = (self.round_off(&moment, [one, other]), self.gap(one, other));
+                let is_round = theirs.radius() > 0.0;
+                let reach = if is_round || one == other { round } else { round.max(NEAR * keeps) };
+                if moment.extents[one].distance(&moment.extents[other]) > theirs.radius() + reach
                     || !wanted([self.sides[one], self.sides[other]])
                     || one == other && !self.contacts.bodies.get(one).is_some_and(|body| body.itself)
                 {
                     continue;
                 }
-                let deepest = if one == other { crossing_itself(mine) } else { deepest([mine, theirs], round) };
-                let least = if theirs.radius() > 0.0 { round } else { -round };
+                let deepest =
+                    if one == other { meeting_itself(mine, round) } else { deepest([mine, theirs], round, reach) };
+                let least = if is_round { round } else { -reach };
                 found.extend(deepest.filter(|deepest| deepest.depth > least).map(|Deepest { depth, side, point }| {
                     let node = match side {
                         0 => self.node(one, point),
@@ -97,8 +105,8 @@ impl Surfaces {
                         // Beside a point of an obstacle.
                         _ => self.node(one, nearest(mine, theirs.at[point as usize])),
                     };
-                    let depth = if depth > round { depth } else { 0.0 };
-                    Overlap { of: [self.sides[one], self.sides[other]], node, depth }
+                    let depth = if depth.abs() > round { depth } else { 0.0 };
+                    Overlap { of: [self.sides[one], self.sides[other]], node, depth, keeps }
                 }));
             }
             found.extend(self.below(one, position, &moment, time).filter(|overlap| wanted(overlap.of)));
@@ -122,7 +130,7 @@ impl Surfaces {
             let (normal, height) = obstacle.half_space(time)?;
             let (point, depth) = self.deepest_below(body, points, normal, height)?;
             let node = if is_carried { self.node(body, point as u32) } else { first + point };
-            Some(Overlap { of: [Side::Body(body), Side::Obstacle(number)], node, depth })
+            Some(Overlap { of: [Side::Body(body), Side::Obstacle(number)], node, depth, keeps: 0.0 })
         })
     }
 
@@ -199,14 +207,15 @@ pub(super) fn is_nearer(of: [Placed<'_>; 2], reach: f64) -> bool {
         || !inside(of[1].at, of[0]).is_empty()
 }
 
-/// The deepest place of a surface that crosses itself.
-fn crossing_itself(of: Placed<'_>) -> Option<Deepest> {
-    let depths = super::cross::crossings([of; 2]).into_iter().map(|facets| between([of; 2], facets, 0.0));
-    depths.reduce(deeper)
+/// The deepest place of a surface that crosses or touches itself.
+fn meeting_itself(of: Placed<'_>, round: f64) -> Option<Deepest> {
+    let pairs = near_facets([of; 2], round).into_iter();
+    let apart = pairs.filter(|&[first, second]| first < second && !are_joined(of, [first, second]));
+    apart.map(|facets| between([of; 2], facets, 0.0)).filter(|deepest| deepest.depth >= -round).reduce(deeper)
 }
 
-/// What lies deepest of two surfaces, if they are nearer than a reach (m).
-fn deepest(of: [Placed<'_>; 2], reach: f64) -> Option<Deepest> {
+/// What lies deepest of two surfaces, if they are nearer than a reach (m). Depths are equal to a round-off (m).
+fn deepest(of: [Placed<'_>; 2], round: f64, reach: f64) -> Option<Deepest> {
     let radius = of[1].radius();
     let facets = near_facets(of, radius + reach).into_iter().map(|facets| between(of, facets, radius));
     let near = facets.filter(|deepest| deepest.depth >= -reach).reduce(deeper);
@@ -214,10 +223,10 @@ fn deepest(of: [Placed<'_>; 2], reach: f64) -> Option<Deepest> {
     let within = within.reduce(deeper);
     // Of a point and facets that are equally deep, the point is told.
     let found = match (within, near) {
-        (Some(within), Some(near)) if near.depth <= within.depth + reach => Some(within),
+        (Some(within), Some(near)) if near.depth <= within.depth + round => Some(within),
         (within, near) => near.or(within),
     };
-    found.filter(|found| found.depth > reach).or_else(|| deepest_middle(of)).or(found)
+    found.filter(|found| found.depth > round).or_else(|| deepest_middle(of)).or(found)
 }
 
 /// The point of a surface that is nearest to a place.

@@ -19,6 +19,14 @@ pub(super) struct Law {
     pub(super) friction: f64,
 }
 
+impl Law {
+    /// The law for points whose distance is a local minimum only nearly: they may come nearer, and rebound less. A push along the line between
+    /// them would brake what slides over a flat surface, at each of its edges. These shares lose little speed there, and let hardly anything cross.
+    fn of_nearly_least(self) -> Self {
+        Self { gap: 0.25 * self.gap, restitution: 0.5 * self.restitution, ..self }
+    }
+}
+
 /// The velocity with which nodes moved in a step, and the one that decides a rebound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Timing {
@@ -53,6 +61,8 @@ pub(super) struct Touch {
     pub(super) normal: DVec3,
     /// Their distance at the start of the step (m).
     pub(super) distance: f64,
+    /// Whether the distance is a local minimum on both surfaces, and not only nearly so.
+    pub(super) is_least: bool,
     /// The velocity (m/s) by which the surface of a round obstacle that turns moves along at the contact, beside that of its axis.
     pub(super) drag: DVec3,
     /// Where its terms begin and end.
@@ -162,7 +172,8 @@ impl Moved<'_> {
 
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.
     pub(super) fn resolve(&mut self, law: Law, touch: &Touch, terms: &[Term]) -> DVec3 {
-        let (Law { gap, restitution, friction }, Touch { normal, distance, drag, .. }) = (law, *touch);
+        let Touch { normal, distance, is_least, drag, .. } = *touch;
+        let Law { gap, restitution, friction } = if is_least { law } else { law.of_nearly_least() };
         let way: DVec3 = terms.iter().map(|&Term { node, weight }| self.place(node) * weight).sum();
         let reached = normal.dot(way);
         if reached >= gap {

@@ -43,6 +43,7 @@ mod runaway;
 #[cfg(feature = "scene")]
 mod settled;
 mod shape_matching;
+mod sliding;
 mod stability;
 mod state;
 mod support;

@@ -49,8 +49,9 @@ fn overlap(one: &Arc<Body>, other: &Arc<Body>, by: [f64; 3]) -> Option<Overlap> 
     found.into_iter().next()
 }
 
+/// The depth, unless they are apart.
 fn depth(one: &Arc<Body>, other: &Arc<Body>, by: [f64; 3]) -> Option<f64> {
-    overlap(one, other, by).map(|overlap| overlap.depth)
+    overlap(one, other, by).map(|overlap| overlap.depth).filter(|&depth| depth >= 0.0)
 }
 
 /// Blocks of equal cells have all corners on the faces of each other.
@@ -187,9 +188,11 @@ fn bodies_and_obstacles() {
         depth(Shape::Box { centre: DVec3::new(0.5, y, 0.5), half: DVec3::splat(0.25), rotation })
     };
     assert_eq!(stone(-0.25, 0.0), Some(0.0));
-    assert_eq!(stone(-0.26, 0.0), None);
+    assert_eq!(stone(-0.3, 0.0), None);
+    // Nearer than the distance that is kept.
+    near(stone(-0.26, 0.0), -0.01);
     near(stone(-0.2, 0.0), 0.05);
-    assert_eq!(stone(-0.36, FRAC_PI_4), None);
+    assert_eq!(stone(-0.41, FRAC_PI_4), None);
     near(stone(-0.3, FRAC_PI_4), 0.25 * 2.0_f64.sqrt() - 0.3);
     let floor = |height: f64| depth(Shape::Floor { normal: DVec3::Y, height });
     assert_eq!((floor(-0.1), floor(0.0), floor(0.25)), (None, None, Some(0.25)));

@@ -233,7 +233,7 @@ fn edges_and_corners_do_not_cross() {
                 let text = format!("{name}, {restitution}, {stiffness} at step {}", world.steps());
                 assert_eq!(crossings([&body, &body], [one, other]), 0, "{text}");
                 let gained = world.diagnostics().energy / start - 1.0;
-                assert!(gained < if restitution == 1.0 { 0.08 } else { 0.02 }, "{text}: {gained}");
+                assert!(gained < if restitution == 1.0 { 0.05 } else { 0.02 }, "{text}: {gained}");
             }
             assert_eq!(world.status(), Status::Ok);
         }

@@ -7,7 +7,7 @@ use crate::reading::captions::quantity;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, list, nearest, quoted};
 use crate::scene::file::{BodyFile, PairFile, ShapeFile};
-use crate::scene::{Scene, SceneBody};
+use crate::scene::{Run, Scene, SceneBody};
 use crate::sim::{BodyContact, Contacts, Obstacle, Overlap, PairContact, Shape, Side, Surfaces};
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,6 +35,7 @@ pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Coll
         check_idle(scene, report);
         return None;
     }
+    check_friction_of(scene, report);
     let typed = scene.file.contact.clone().unwrap_or_default();
     let of_body = |(at, typed): (usize, &Option<BodyFile>)| {
         let typed = typed.as_ref()?;
@@ -60,6 +61,34 @@ fn check_idle(scene: &Typed<'_>, report: &mut Collector<'_>) {
         if report.is_typed(&path) {
             let message = format!("`{}` has no effect, as `contact.rule` is \"nodes\"", written(&path));
             report.at_key(&path, message, "remove it, or write contact.rule = \"surfaces\"");
+        }
+    }
+}
+
+/// Reports `friction_of` where surfaces meet an obstacle.
+fn check_friction_of(scene: &Typed<'_>, report: &mut Collector<'_>) {
+    for (at, obstacle) in scene.file.obstacle.iter().enumerate() {
+        let path = key_path!["obstacle", at, "friction_of"];
+        let is_met_by_nodes = |shape: &ShapeFile| matches!(shape, ShapeFile::Floor { .. } | ShapeFile::Plate { .. });
+        if report.is_typed(&path) && obstacle.as_ref().is_some_and(|one| !is_met_by_nodes(&one.shape)) {
+            let message =
+                "`friction_of` has no effect, as surfaces meet this obstacle: their friction acts on the path";
+            report.at_key(&path, message, "remove it, or write contact.rule = \"nodes\"");
+        }
+    }
+}
+
+/// Reports pairs of bodies and obstacles that are in no run together.
+pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &mut Collector<'_>) {
+    for (at, PairContact { of, .. }) in contacts.pairs.iter().enumerate() {
+        let bodies: Vec<_> =
+            of.iter().filter_map(|side| if let Side::Body(at) = side { Some(*at) } else { None }).collect();
+        let is_in = |run: &Run| run.recording.is_none() && bodies.iter().all(|body| run.of.contains(body));
+        if !scene.runs.iter().any(is_in) {
+            let names: Vec<_> = bodies.iter().map(|&body| scene.bodies[body].name.as_str()).collect();
+            let names = list(&names, "and", quoted);
+            let message = format!("the pair changes nothing, as no run simulates {names}");
+            report.at(&key_path!["contact", "pair", at, "of"], message, "name what is in one run, or remove the pair");
         }
     }
 }
@@ -170,8 +199,8 @@ pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
     }
 }
 
-/// Warns of steps in which nodes move so far relative to others, or to obstacles, at the speeds of the start, that features may pass each
-/// other sideways.
+/// Warns of steps in which nodes move so far relative to others, or to obstacles, at the speeds of the start and of paths, that features may pass
+/// each other sideways.
 pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &mut Collector<'_>) {
     /// The longest way in a step, in cells: above it some facets of blocks that met at random crossed for a few steps (`docs/contact.md`).
     const LONGEST: f64 = 0.5;
@@ -187,14 +216,23 @@ pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &mut Coll
         let speeds = run.initial.velocity.iter().copied().chain(solids.then_some(DVec3::ZERO));
         let [low, high] =
             speeds.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], speed| [low.min(speed), high.max(speed)]);
-        let (speed, side) =
-            ((high - low).length(), run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min));
+        let side = run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min);
+        let size = run.of.iter().map(|&body| scene.bodies[body].body.extent()).fold(0.0, f64::max);
+        // What a path turns is not larger than the largest body.
+        let paths = run
+            .grips
+            .iter()
+            .map(|grip| &grip.motion)
+            .chain(scene.obstacles.iter().filter(is_solid).map(|one| &one.motion));
+        let on_path = paths.map(|path| path.greatest_speed(0.5 * size)).fold(0.0, f64::max);
+        let speed = (high - low).length().max(on_path);
+        let when = if on_path < speed { "at the start" } else { "along its path" };
         let most = LONGEST * side / speed;
         if run.step > most {
             let [way, cell, speed] =
                 [(speed * run.step, "m"), (side, "m"), (speed, "m/s")].map(|(it, unit)| quantity(it, unit));
             let message = format!(
-                "nodes of {} move {way} in a step relative to others, at {speed} at the start, and a cell has {cell}: surfaces may cross sideways",
+                "nodes of {} move {way} in a step relative to others, at {speed} {when}, and a cell has {cell}: surfaces may cross sideways",
                 quoted(&run.name)
             );
             // The run's own step, or that of the scene.
@@ -261,6 +299,25 @@ fn and_others(pairs: usize) -> String {
     }
 }
 
+/// Why contact does not bear it.
+fn why(overlap: &Overlap) -> String {
+    match overlap.depth {
+        ..0.0 => format!(
+            "contact keeps them {} apart, and the first step would throw them there",
+            quantity(overlap.keeps, "m")
+        ),
+        _ => "contact cannot part them".to_owned(),
+    }
+}
+
+/// What else than moving a body helps.
+fn or_separate(overlap: &Overlap) -> &'static str {
+    match overlap.depth {
+        ..0.0 => "write contact.separate = true, or give their `contact.pair` a smaller `thickness`",
+        _ => "or write contact.separate = true",
+    }
+}
+
 /// Warns of bodies that overlap at the start of a run, where nodes alone meet obstacles.
 pub(super) fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
     let mut found = overlaps(scene, &[], &Contacts::default());
@@ -281,19 +338,24 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
     if let Some((&[first, second], overlap)) = of_bodies {
         let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
         let more = and_others(pairs);
-        let Overlap { node, depth, of: [own, _] } = *overlap;
+        let Overlap { node, depth, of: [own, _], .. } = *overlap;
         let of_node = match own {
             Side::Body(body) if first != second => format!(" of {}", quoted(&scene.bodies[body].name)),
             _ => String::new(),
         };
-        let reach = quantity(depth, "m");
+        let (reach, is_itself) = (quantity(depth, "m"), first == second);
         let what = match depth {
-            _ if first == second => format!("{} reaches {reach} into itself", scene.bodies[first].in_words()),
+            0.0 if is_itself => format!("{} touches itself", scene.bodies[first].in_words()),
+            _ if is_itself => format!("{} reaches {reach} into itself", scene.bodies[first].in_words()),
             0.0 => format!("{one} and {other} touch"),
+            ..0.0 => format!("{one} and {other} are {} apart", quantity(-depth, "m")),
             _ => format!("{one} and {other} reach {reach} into each other"),
         };
-        let message = format!("{what} at the start, at node {node}{of_node}{more}: contact cannot part them");
-        let help = "move one of them, with `offset` or `lowest`, or write contact.separate = true";
+        let message = format!("{what} at the start, at node {node}{of_node}{more}: {}", why(overlap));
+        let help = match is_itself {
+            true => "move these nodes apart, join them if they are one, or remove `self_contact`".to_owned(),
+            false => format!("move one of them, with `offset` or `lowest`, {}", or_separate(overlap)),
+        };
         report.at(&typed.place(second), message, help);
     }
     for (&[body, obstacle], overlap) in found.iter().filter(|(of, _)| of[1] >= scene.bodies.len()) {
@@ -306,13 +368,18 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
                 format!("{of} starts inside this {name}: node {node} lies {reach} below its surface")
             }
             _ if overlap.depth == 0.0 => format!("{of} touches this {name} at the start, at node {node}"),
+            _ if overlap.depth < 0.0 => {
+                let apart = quantity(-overlap.depth, "m");
+                format!("{of} is {apart} from this {name} at the start, at node {node}: {}", why(overlap))
+            }
             _ => format!("{of} reaches {reach} into this {name} at the start, at node {node}"),
         };
         let help = match shape {
             Shape::Floor { .. } => {
                 "move the floor, set the body on it with its `lowest` or `offset`, or write contact.separate = true"
+                    .into()
             }
-            _ => "move one of them, or write contact.separate = true; a path can move the obstacle there later",
+            _ => format!("move one of them, {}; a path can move the obstacle there later", or_separate(overlap)),
         };
         report.at(&key_path!["obstacle", number], message, help);
     }

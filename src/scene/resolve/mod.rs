@@ -132,6 +132,7 @@ impl<'a> Typed<'a> {
         Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
         if let Some(contacts) = &scene.contacts {
             contact::check_starts(&scene, contacts, self, report);
+            contact::check_pairs(&scene, contacts, report);
         }
         doubts::warn(&scene, self, report);
         until::end(self, &mut scene, report);
