@@ -208,7 +208,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
 fn code_and_files_make_the_same_scenes_of_several_bodies() {
     let cube = BodyBuilder::lattice(Lattice::new([2, 2, 2], 0.1)).name("cube").lowest(0.5);
     let nodes = [[0.0, 0.0, 0.0], [1e3, 0.0, 0.0], [0.0, 1e3, 0.0], [0.0, 0.0, 1e3]];
-    let solid = BodyBuilder::arrays(nodes, [[0, 1, 2, 3]]).name("solid").offset([9.0, 0.0, 0.0]);
+    let solid = BodyBuilder::arrays(nodes, [[0, 1, 2, 3]]).name("solid").offset([90.0, 0.0, 0.0]);
     let models = [("cube", shape(1.0).into()), ("solid", springs(2.0).into())];
     let made = Scene::builder("scene", cube)
         .body(solid)
@@ -224,7 +224,7 @@ fn code_and_files_make_the_same_scenes_of_several_bodies() {
         name = 'solid'
         nodes = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 1e3]]
         elements = [[0, 1, 2, 3]]
-        offset = [9, 0, 0]
+        offset = [90, 0, 0]
         [[run]]
         name = 'Both'
         models.cube = { kind = 'shape-based', stiffness = 1 }
