@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Two bodies, or a body and an obstacle, that overlap, touch, or are much nearer than the distance that they keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// The two: the body with the lower number first, obstacles last. They are the same where the surface of a body crosses itself.
+    /// The two: the body with the lower number first, obstacles last. They are the same where a body crosses or touches itself.
     pub of: [Side; 2],
     /// The node of a body, among those of all bodies, that lies deepest, or nearest to the deepest place.
     pub node: usize,
