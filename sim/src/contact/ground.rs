@@ -121,7 +121,7 @@ impl Ground {
             touches.all.push((
                 [self.number, self.body],
                 self.law,
-                Touch { normal: plane.normal, distance, is_least: true, drag: DVec3::ZERO, terms },
+                Touch { normal: plane.normal, distance, is_whole: true, drag: DVec3::ZERO, terms },
             ));
         }
     }

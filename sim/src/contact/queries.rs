@@ -102,7 +102,7 @@ impl Features {
             return None;
         }
         let law = Law { gap: 0.05 * from[2].distance(from[3]), restitution: 0.0, friction: 0.0 };
-        let touch = Touch { normal: way / distance, distance, is_least: true, drag: DVec3::ZERO, terms: [0, 4] };
+        let touch = Touch { normal: way / distance, distance, is_whole: true, drag: DVec3::ZERO, terms: [0, 4] };
         let mut position = to;
         let mut motion = [0, 1, 2, 3].map(|at| Motion { inverse_mass: 1.0, ..Motion::held(to[at] - from[at]) });
         let mut moved = Moved { position: &mut position, motion: &mut motion, step: 1.0, timing: Timing::End };

@@ -61,8 +61,9 @@ pub(super) struct Touch {
     pub(super) normal: DVec3,
     /// Their distance at the start of the step (m).
     pub(super) distance: f64,
-    /// Whether the distance is a local minimum on both surfaces, and not only nearly so.
-    pub(super) is_least: bool,
+    /// Whether the law holds as it is: the distance is a local minimum on both surfaces, or they are of one body, whose folds press on each
+    /// other along lines that lean.
+    pub(super) is_whole: bool,
     /// The velocity (m/s) by which the surface of a round obstacle that turns moves along at the contact, beside that of its axis.
     pub(super) drag: DVec3,
     /// Where its terms begin and end.
@@ -172,8 +173,8 @@ impl Moved<'_> {
 
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.
     pub(super) fn resolve(&mut self, law: Law, touch: &Touch, terms: &[Term]) -> DVec3 {
-        let Touch { normal, distance, is_least, drag, .. } = *touch;
-        let Law { gap, restitution, friction } = if is_least { law } else { law.of_nearly_least() };
+        let Touch { normal, distance, is_whole, drag, .. } = *touch;
+        let Law { gap, restitution, friction } = if is_whole { law } else { law.of_nearly_least() };
         let way: DVec3 = terms.iter().map(|&Term { node, weight }| self.place(node) * weight).sum();
         let reached = normal.dot(way);
         if reached >= gap {

@@ -59,6 +59,7 @@ impl Touches {
         let there = if sign > 0.0 { closest.here - closest.way } else { closest.here };
         let drag = (seen.drag)(of[1], there, normal * other.thickness);
         let terms = [begin, self.terms.len()].map(|at| at as u32);
-        self.all.push(Touch { normal, distance, is_least: closest.is_least, drag, terms });
+        let is_whole = closest.is_least || of[0] == of[1];
+        self.all.push(Touch { normal, distance, is_whole, drag, terms });
     }
 }
