@@ -1,6 +1,6 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
-use super::contact::{End, Felt, Impulses, Obstacle, Shape, Source, Stage, Timing};
+use super::contact::{End, Felt, Impulses, Obstacle, Source, Stage, Timing};
 use super::crew::Crew;
 use super::grip::Grip;
 use super::limit::SpeedLimit;
@@ -35,9 +35,8 @@ pub(super) struct System {
 impl System {
     /// The obstacles that nodes meet, with their numbers: half-spaces alone where surfaces meet the others.
     pub(super) fn met_by_nodes(&self) -> Vec<(usize, &Obstacle)> {
-        let is_met = |(_, obstacle): &(usize, &Obstacle)| {
-            self.surroundings.contacts.is_none() || matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. })
-        };
+        let is_met =
+            |(_, obstacle): &(usize, &Obstacle)| self.surroundings.contacts.is_none() || obstacle.shape.is_half_space();
         self.surroundings.obstacles.iter().enumerate().filter(is_met).collect()
     }
 

@@ -6,7 +6,7 @@ use crate::reading::collector::{Collector, key_path};
 use crate::reading::coordinates::{Coordinates, vector};
 use crate::reading::words::quoted;
 use crate::sim::geometry::is_inside;
-use crate::sim::{Dimension, Obstacle, Shape};
+use crate::sim::{Dimension, Obstacle};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -107,7 +107,7 @@ impl CameraFile {
 
 /// Whether obstacles can hide bodies from a camera. Grounds do not, and plates can be seen through.
 fn can_hide(obstacles: &[Obstacle]) -> bool {
-    obstacles.iter().any(|obstacle| !matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }))
+    obstacles.iter().any(|obstacle| !obstacle.shape.is_half_space())
 }
 
 /// The unit vectors of a camera with an azimuth and elevation (rad): right, up, and from its target to it.

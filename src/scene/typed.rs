@@ -38,6 +38,11 @@ impl SceneFile {
         self.contact.as_ref().is_some_and(|contact| contact.rule == Some(ContactRule::Nodes))
     }
 
+    /// Whether bodies that overlap at the start are moved apart.
+    pub(super) fn separates(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.separate)
+    }
+
     /// Damping in proportion to masses (1/s).
     pub(super) fn mass_damping(&self) -> f64 {
         self.mass_damping.map_or(0.0, MassDamping::rate)

@@ -166,6 +166,20 @@ fn friction_of_an_obstacle_that_surfaces_meet() {
     good(&format!("{}contact.rule = 'nodes'", of(", friction_of = 'velocity'")));
 }
 
+/// Nodes meet half-spaces, so that a thickness keeps no distance from them.
+#[test]
+fn a_thickness_without_a_surface_to_meet() {
+    let alone =
+        WORLD.lines().filter(|line| !line.contains("'Both'") && !line.starts_with("    { kind")).collect::<Vec<_>>();
+    let alone = alone.join("\n") + "\n";
+    let thick = |world: &str| world.replace("offset = [1, 0, 0]", "offset = [1, 0, 0], thickness = 0.01");
+    good(&alone);
+    let idle = "6:63 the thickness of the body \"cube\" changes nothing: it meets half-spaces with its nodes remove it";
+    expect(&bad(&thick(&alone)), 0, idle);
+    good(&thick(&alone).replace("thickness", "self_contact = true, thickness"));
+    good(&thick(WORLD));
+}
+
 /// A body of two layers at one place, whose nodes are not the same.
 #[test]
 fn layers_of_one_body_at_one_place() {
@@ -229,6 +243,11 @@ fn bodies_are_moved_apart_where_a_scene_says_so() {
     assert!(both.clone().all(|(&from, &to)| from + way == to));
     assert_eq!(scene.runs[0].initial.position[12..], scene.bodies[1].initial.position);
     assert!(scene.summary().to_string().contains("moved by (0.05"), "{}", scene.summary());
+    // Between a floor and a lid there is no way.
+    let lid = "{ kind = 'plate', point = [0, 0.08, 0], normal = [0, -1, 0] }";
+    let shut = WORLD.replace("height = -1", "height = 0.02").replace("obstacle = [", &format!("obstacle = [{lid},"));
+    let found = bad(&format!("{shut}contact.separate = true")).to_string();
+    assert!(found.contains("; `contact.separate` found no way for it"), "{found}");
     // Where nothing overlaps nothing moves, and nodes cannot be separated.
     assert_eq!(good(&format!("{WORLD}contact.separate = true")).bodies[1].separated, glam::DVec3::ZERO);
     let idle = "1:1 `contact.separate` has no effect, as `contact.rule` is \"nodes\"";

@@ -66,6 +66,11 @@ pub struct Contact {
 }
 
 impl Shape {
+    /// Whether it has no end: a floor or a plate.
+    pub fn is_half_space(&self) -> bool {
+        matches!(self, Self::Floor { .. } | Self::Plate { .. })
+    }
+
     /// The depth of a point below the surface; `None` outside and on it.
     #[cfg(test)]
     fn contact(&self, point: DVec3) -> Option<Contact> {

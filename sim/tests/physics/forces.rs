@@ -15,6 +15,9 @@ use std::sync::Arc;
 
 const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.1);
 
+/// A load on the first node of each of the blocks below (N).
+const PUSH: DVec3 = DVec3::new(4.0, -2.0, 1.0);
+
 fn obstacle(shape: Shape) -> Obstacle {
     let motion = Motion::Still;
     Obstacle { shape, motion, pivot: DVec3::ZERO, restitution: 0.2, friction: 0.4, friction_of: Default::default() }
@@ -37,7 +40,7 @@ fn grips(bodies: &[Arc<Body>]) -> Vec<Grip> {
     ]
 }
 
-/// Three blocks that fall on each other, on a floor, a plate and a ball, gripped or free.
+/// Three blocks that are pushed and fall on each other, on a floor, a plate and a ball, gripped or free.
 fn heap(integrator: Integrator, kernel: Kernel, has_surfaces: bool, is_gripped: bool) -> (Vec<Arc<Body>>, World) {
     let mut noise = Noise(5);
     let bodies: Vec<_> = (0..3u32)
@@ -54,7 +57,10 @@ fn heap(integrator: Integrator, kernel: Kernel, has_surfaces: bool, is_gripped: 
     ];
     let all: Vec<_> = bodies.iter().map(|(body, _)| Arc::clone(body)).collect();
     let grips = if is_gripped { grips(&all) } else { Vec::new() };
-    let around = Surroundings { gravity: GRAVITY, obstacles, grips, ..with_contacts(0.3, 0.4) };
+    let first = |at: usize| all[..at].iter().map(|body| body.len() as u32).sum();
+    let push = Loading::dead((0..all.len()).map(first).collect(), vec![PUSH; all.len()], Course::ALWAYS);
+    let loads: Vec<Arc<dyn Load>> = vec![Arc::new(push)];
+    let around = Surroundings { gravity: GRAVITY, obstacles, grips, loads, ..with_contacts(0.3, 0.4) };
     let around = if has_surfaces { around } else { Surroundings { contacts: None, ..around } };
     let world = by(integrator, kernel, &bodies, 2e3, 0.02, around);
     (all, world)
@@ -94,7 +100,7 @@ fn released_nodes_feel_obstacles_at_once() {
     }
 }
 
-/// Of each body, gravity, contact and constraints change the momentum to round-off, with every integrator, code and rule; a pair pushes itself
+/// Of each body, gravity, loads, contact and constraints change the momentum to round-off, with every integrator, code and rule; a pair pushes itself
 /// nowhere.
 #[test]
 fn forces_are_the_change_of_momentum() {
@@ -130,7 +136,7 @@ fn forces_are_the_change_of_momentum() {
                 for (at, body) in bodies.iter().enumerate() {
                     let mass: f64 = body.mass().iter().sum();
                     let force: DVec3 = forces.iter().filter(|one| one.on == at).map(|one| one.force).sum();
-                    let off = now[at] - before[at] - (GRAVITY * mass + force) * (7.0 * step);
+                    let off = now[at] - before[at] - (GRAVITY * mass + PUSH + force) * (7.0 * step);
                     assert!(off.length() < 1e-12 * mass * 3.0, "{about}: {off} of body {at}");
                     most = most.max(force.length());
                 }

@@ -93,6 +93,20 @@ pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &mut Colle
     }
 }
 
+/// Reports thicknesses of bodies that meet half-spaces alone, with their nodes.
+pub(super) fn check_idle_thickness(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>, report: &mut Collector<'_>) {
+    let has_solids = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
+    for (at, (body, own)) in scene.bodies.iter().zip(&contacts.bodies).enumerate() {
+        let meets = |run: &Run| run.recording.is_none() && run.of.len() > 1 && run.of.contains(&at);
+        let counts = has_solids || own.itself || body.body.carried().is_some() || scene.runs.iter().any(meets);
+        if own.thickness.is_some() && !counts {
+            let message =
+                format!("the thickness of {} changes nothing: it meets half-spaces with its nodes", body.in_words());
+            report.at(&key_path![typed.place(at); "thickness"], message, "remove it");
+        }
+    }
+}
+
 /// Reports a thickness (m) larger than a cell of some bodies.
 fn check_thickness(thickness: f64, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let Some(finest) = bodies.iter().min_by(|one, other| one.side.total_cmp(&other.side)) else { return };
@@ -179,7 +193,7 @@ fn side(scene: &Typed<'_>, name: &str, path: &[PathPart<'_>], report: &mut Colle
 /// Warns of models whose elements break, where surfaces can meet.
 pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
     let Some(contacts) = &scene.contacts else { return };
-    let has_extent = scene.obstacles.iter().any(|one| !matches!(one.shape, Shape::Floor { .. } | Shape::Plate { .. }));
+    let has_extent = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
     for (at, run) in scene.runs.iter().enumerate() {
         let meets_itself = |&body: &usize| contacts.bodies.get(body).is_some_and(|body| body.itself);
         if !has_extent && run.of.len() < 2 && !run.of.iter().any(meets_itself) {
@@ -204,7 +218,7 @@ pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
 pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &mut Collector<'_>) {
     /// The longest way in a step, in cells: above it some facets of blocks that met at random crossed for a few steps (`docs/contact.md`).
     const LONGEST: f64 = 0.5;
-    let is_solid = |one: &&Obstacle| !matches!(one.shape, Shape::Floor { .. } | Shape::Plate { .. });
+    let is_solid = |one: &&Obstacle| !one.shape.is_half_space();
     let stepped = scene.runs.iter().enumerate().filter(|(_, run)| run.recording.is_none() && run.tolerance.is_none());
     for (at, run) in stepped {
         let meets_itself = run.contacts(contacts).bodies.iter().any(|body| body.itself);
@@ -251,7 +265,7 @@ pub(super) fn separate(
     contacts: &Contacts,
     choices: &[Option<Choice<'_>>],
 ) {
-    if !scene.file.contact.as_ref().is_some_and(|typed| typed.separate) {
+    if !scene.file.separates() {
         return;
     }
     let of: Vec<_> = bodies.iter().map(|body| Arc::clone(&body.body)).collect();
@@ -311,10 +325,11 @@ fn why(overlap: &Overlap) -> String {
 }
 
 /// What else than moving a body helps.
-fn or_separate(overlap: &Overlap) -> &'static str {
+fn or_separate(overlap: &Overlap, typed: &Typed<'_>) -> &'static str {
     match overlap.depth {
-        ..0.0 => "write contact.separate = true, or give their `contact.pair` a smaller `thickness`",
-        _ => "or write contact.separate = true",
+        _ if typed.file.separates() => "; `contact.separate` found no way for it",
+        ..0.0 => ", write contact.separate = true, or give their `contact.pair` a smaller `thickness`",
+        _ => ", or write contact.separate = true",
     }
 }
 
@@ -354,7 +369,7 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
         let message = format!("{what} at the start, at node {node}{of_node}{more}: {}", why(overlap));
         let help = match is_itself {
             true => "move these nodes apart, join them if they are one, or remove `self_contact`".to_owned(),
-            false => format!("move one of them, with `offset` or `lowest`, {}", or_separate(overlap)),
+            false => format!("move one of them, with `offset` or `lowest`{}", or_separate(overlap, typed)),
         };
         report.at(&typed.place(second), message, help);
     }
@@ -364,7 +379,7 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
         let (name, node) = (shape_name(shape), overlap.node);
         let reach = quantity(overlap.depth, "m");
         let message = match shape {
-            Shape::Floor { .. } | Shape::Plate { .. } => {
+            _ if shape.is_half_space() => {
                 format!("{of} starts inside this {name}: node {node} lies {reach} below its surface")
             }
             _ if overlap.depth == 0.0 => format!("{of} touches this {name} at the start, at node {node}"),
@@ -376,10 +391,14 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
         };
         let help = match shape {
             Shape::Floor { .. } => {
-                "move the floor, set the body on it with its `lowest` or `offset`, or write contact.separate = true"
-                    .into()
+                format!(
+                    "move the floor, set the body on it with its `lowest` or `offset`{}",
+                    or_separate(overlap, typed)
+                )
             }
-            _ => format!("move one of them, {}; a path can move the obstacle there later", or_separate(overlap)),
+            _ => {
+                format!("move one of them{}; a path can move the obstacle there later", or_separate(overlap, typed))
+            }
         };
         report.at(&key_path!["obstacle", number], message, help);
     }

@@ -133,6 +133,7 @@ impl<'a> Typed<'a> {
         if let Some(contacts) = &scene.contacts {
             contact::check_starts(&scene, contacts, self, report);
             contact::check_pairs(&scene, contacts, report);
+            contact::check_idle_thickness(&scene, contacts, self, report);
         }
         doubts::warn(&scene, self, report);
         until::end(self, &mut scene, report);

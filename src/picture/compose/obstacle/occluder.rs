@@ -61,7 +61,7 @@ impl Staging<'_> {
             half: narrow_point(half / self.draft.side),
             rotation: turn.to_array().map(narrow),
             radius: narrow(radius / self.draft.side),
-            is_clear: matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }),
+            is_clear: obstacle.shape.is_half_space(),
         }
     }
 }
