@@ -10,8 +10,7 @@ use crate::runner::{Frame, RunFrame};
 impl Composer<'_> {
     /// Samples of overlays and bodies with their meanings.
     pub(super) fn samples(&self, place: &KeyPlace<'_>) -> Vec<Sample<'_>> {
-        let explained = overlay::all().filter(|overlay| overlay.is_explained(&self.scene.view));
-        explained.flat_map(|overlay| overlay.samples(self, place)).chain(self.samples_of_bodies()).collect()
+        overlay::samples(self, place).chain(self.samples_of_bodies()).collect()
     }
 
     /// A sample of each colour of bodies and regions, with their names. A single body needs none.

@@ -63,8 +63,8 @@ impl Draft<'_> {
 
     /// Draws the overlays of the panel.
     pub(super) fn overlays(&self, marks: &mut Vec<Item>, curves: &mut Vec<Item>) {
-        overlay::MARKS.iter().for_each(|overlay| overlay.draw(self, marks));
-        overlay::CURVES.iter().for_each(|overlay| overlay.draw(self, curves));
+        overlay::MARKS.iter().for_each(|draw| draw(self, marks));
+        overlay::CURVES.iter().for_each(|draw| draw(self, curves));
     }
 
     /// Camera and light.

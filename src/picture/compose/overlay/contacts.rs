@@ -1,7 +1,6 @@
 //! Contacts: a dot where bodies touch, and an arrow for the mean force of each obstacle and body on each body.
 
-use super::{KeyPlace, Overlay};
-use crate::look::View;
+use super::KeyPlace;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::layout::steps::RING;
@@ -18,47 +17,38 @@ const LEAST: f64 = 0.6;
 /// A force as large as the mean weight of bodies on Earth has an arrow as long as this share of the size of the largest body.
 const LENGTH: f64 = 0.5;
 
-/// Dots and arrows of contact.
-pub(super) struct Contacts;
+/// A hollow arrow with its force in words.
+pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
+    let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
+    let force = number::round_below(place.legend.arrow_length() / length);
+    let words = number::value(Diagnostic::ContactForce, force, composer.extent);
+    let kind = SampleKind::Hollow([force * length, place.size(composer)]);
+    vec![Sample { names: vec![format!("contact force {words}").into(), words.into()], kind }]
+}
 
-impl Overlay for Contacts {
-    fn is_explained(&self, view: &View) -> bool {
-        view.visible.contacts
+/// Dots and arrows of contact. Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as
+/// loads are filled. Dots lie above all arrows.
+pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
+    let (snapshot, palette) = (&draft.run.snapshot, &draft.composer.palette);
+    if !draft.scene.view.visible.contacts || draft.diverged {
+        return;
     }
-
-    /// A hollow arrow with its force in words.
-    fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-        let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
-        let force = number::round_below(place.legend.arrow_length() / length);
-        let words = number::value(Diagnostic::ContactForce, force, composer.extent);
-        let kind = SampleKind::Hollow([force * length, place.size(composer)]);
-        vec![Sample { names: vec![format!("contact force {words}").into(), words.into()], kind }]
-    }
-
-    /// Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as loads are filled. Dots
-    /// lie above all arrows.
-    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
-        let (snapshot, palette) = (&draft.run.snapshot, &draft.composer.palette);
-        if !draft.scene.view.visible.contacts || draft.diverged {
-            return;
-        }
-        let metres = metres_a_newton(draft.scene);
-        let arrows = snapshot.reactions.iter().filter_map(|&Reaction { from, on, force, .. }| {
-            let own = snapshot.contact_points.iter().filter(|point| {
-                let is_back = point.from == Side::Body(on) && from == Source::Body(point.on);
-                (Source::from(point.from), point.on) == (from, on) || is_back
-            });
-            let (count, sum) = own.fold((0, DVec3::ZERO), |(count, sum), point| (count + 1, sum + point.at));
-            let start = (count > 0).then(|| sum / f64::from(count))?;
-            draft.arrow([start, start + force * metres], 0.0, 1.0, arrows::hollow)
+    let metres = metres_a_newton(draft.scene);
+    let arrows = snapshot.reactions.iter().filter_map(|&Reaction { from, on, force, .. }| {
+        let own = snapshot.contact_points.iter().filter(|point| {
+            let is_back = point.from == Side::Body(on) && from == Source::Body(point.on);
+            (Source::from(point.from), point.on) == (from, on) || is_back
         });
-        marks.extend(farthest_first(arrows.collect()));
-        let size = arrows::size(draft.element, draft.scale.unit);
-        let radius = (DOT[0] * RING * size).min(DOT[1] * draft.element).max(LEAST);
-        let pixels = snapshot.contact_points.iter().filter_map(|point| draft.pixel(point.at));
-        let dots = pixels.filter(|&pixel| draft.holds(pixel, radius));
-        marks.extend(dots.map(|pixel| Item::rimmed(pixel, radius, palette.pointer, palette.background)));
-    }
+        let (count, sum) = own.fold((0, DVec3::ZERO), |(count, sum), point| (count + 1, sum + point.at));
+        let start = (count > 0).then(|| sum / f64::from(count))?;
+        draft.arrow([start, start + force * metres], 0.0, 1.0, arrows::hollow)
+    });
+    marks.extend(farthest_first(arrows.collect()));
+    let size = arrows::size(draft.element, draft.scale.unit);
+    let radius = (DOT[0] * RING * size).min(DOT[1] * draft.element).max(LEAST);
+    let pixels = snapshot.contact_points.iter().filter_map(|point| draft.pixel(point.at));
+    let dots = pixels.filter(|&pixel| draft.holds(pixel, radius));
+    marks.extend(dots.map(|pixel| Item::rimmed(pixel, radius, palette.pointer, palette.background)));
 }
 
 /// The length of arrows (m) for each newton.

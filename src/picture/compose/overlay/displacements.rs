@@ -1,7 +1,6 @@
 //! Displacements: an arrow to each node from its place in the best fit of the rest shape.
 
-use super::{KeyPlace, Overlay};
-use crate::look::View;
+use super::KeyPlace;
 use crate::picture::compose::Composer;
 use crate::picture::compose::body::node_radius;
 use crate::picture::compose::draft::Draft;
@@ -11,38 +10,29 @@ use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::sim::Body;
 
-/// Arrows of displacements.
-pub(super) struct Displacements;
+/// An arrow with its length in words.
+pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
+    let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
+    let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
+    let length = number::round_length(metres, composer.extent);
+    vec![place.arrow(composer, [format!("displacement {length}"), length], metres * pixels * scale)]
+}
 
-impl Overlay for Displacements {
-    fn is_explained(&self, view: &View) -> bool {
-        view.visible.displacements
+/// Arrows of displacements, the farthest first, in the colour of text as in the key: paths and fields have others. Arrows
+/// that would be specks on the nodes are left out.
+pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
+    let view = &draft.scene.view;
+    if !view.visible.displacements || draft.diverged || draft.position.is_empty() {
+        return;
     }
-
-    /// An arrow with its length in words.
-    fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-        let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
-        let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
-        let length = number::round_length(metres, composer.extent);
-        vec![place.arrow(composer, [format!("displacement {length}"), length], metres * pixels * scale)]
-    }
-
-    /// The farthest first, in the colour of text as in the key: paths and fields have others. Arrows that would be specks on
-    /// the nodes are left out.
-    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
-        let view = &draft.scene.view;
-        if !view.visible.displacements || draft.diverged || draft.position.is_empty() {
-            return;
-        }
-        let node = if view.visible.nodes { node_radius(draft.scale, draft.element) } else { 0.0 };
-        let arrows = draft.facing_bearers().into_iter().filter_map(|(bearer, opacity)| {
-            let placement = draft.run.snapshot.placements[draft.bodies.assembly().body_of_node(bearer as usize)];
-            let start = placement.place(draft.body.rest()[bearer as usize]);
-            let end = start + view.arrow_scale * (draft.position[bearer as usize] - start);
-            draft.arrow([start, end], 2.0 * node, opacity, arrows::with_halo)
-        });
-        marks.extend(farthest_first(arrows.collect()));
-    }
+    let node = if view.visible.nodes { node_radius(draft.scale, draft.element) } else { 0.0 };
+    let arrows = draft.facing_bearers().into_iter().filter_map(|(bearer, opacity)| {
+        let placement = draft.run.snapshot.placements[draft.bodies.assembly().body_of_node(bearer as usize)];
+        let start = placement.place(draft.body.rest()[bearer as usize]);
+        let end = start + view.arrow_scale * (draft.position[bearer as usize] - start);
+        draft.arrow([start, end], 2.0 * node, opacity, arrows::with_halo)
+    });
+    marks.extend(farthest_first(arrows.collect()));
 }
 
 impl Draft<'_> {

@@ -1,8 +1,8 @@
 //! The outline of another state over the body of a panel.
 
-use super::{KeyPlace, Overlay};
+use super::KeyPlace;
 use crate::colour::Colour;
-use crate::look::{Ghost, View};
+use crate::look::Ghost;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::layout::steps::{SHORT, STRONG, TICK};
@@ -17,38 +17,27 @@ use std::borrow::Cow;
 /// The opacity of the casing of outlines.
 const HALO_ALPHA: f64 = 0.65;
 
+/// A dashed line with the name of what it outlines.
+pub(super) fn samples<'c>(composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
+    let sample = |(name, colour): (_, _)| Sample { names: vec![Cow::from(name)], kind: SampleKind::Ghost(colour) };
+    look(composer).map(sample).into_iter().collect()
+}
+
 /// The outline of the rest shape, or of the body of another run at the same moment.
-pub(super) struct GhostOutline;
-
-impl Overlay for GhostOutline {
-    fn is_explained(&self, view: &View) -> bool {
-        view.ghost.is_some()
-    }
-
-    fn has_colours_of_runs(&self, view: &View) -> bool {
-        matches!(view.ghost, Some(Ghost::Run(_)))
-    }
-
-    fn samples<'c>(&self, composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-        let sample = |(name, colour): (_, _)| Sample { names: vec![Cow::from(name)], kind: SampleKind::Ghost(colour) };
-        look(composer).map(sample).into_iter().collect()
-    }
-
-    fn draw(&self, draft: &Draft<'_>, curves: &mut Vec<Item>) {
-        let Some((_, colour)) = look(draft.composer) else { return };
-        match draft.scene.view.ghost {
-            Some(Ghost::Rest) => {
-                let bodies = &draft.scene.runs[draft.run.run].bodies;
-                draft.outline(&bodies.placed(&draft.run.snapshot.placements), colour, curves);
-            }
-            Some(Ghost::Run(run)) if run != draft.run.run => {
-                let other = draft.others.iter().find(|other| other.run == run);
-                if let Some(other) = other.filter(|other| other.snapshot.status == Status::Ok) {
-                    draft.outline(&other.snapshot.position, colour, curves);
-                }
-            }
-            _ => {}
+pub(super) fn draw(draft: &Draft<'_>, curves: &mut Vec<Item>) {
+    let Some((_, colour)) = look(draft.composer) else { return };
+    match draft.scene.view.ghost {
+        Some(Ghost::Rest) => {
+            let bodies = &draft.scene.runs[draft.run.run].bodies;
+            draft.outline(&bodies.placed(&draft.run.snapshot.placements), colour, curves);
         }
+        Some(Ghost::Run(run)) if run != draft.run.run => {
+            let other = draft.others.iter().find(|other| other.run == run);
+            if let Some(other) = other.filter(|other| other.snapshot.status == Status::Ok) {
+                draft.outline(&other.snapshot.position, colour, curves);
+            }
+        }
+        _ => {}
     }
 }
 

@@ -1,6 +1,5 @@
 //! Marks on nodes that grips hold or drag.
 
-use super::Overlay;
 use crate::picture::compose::draft::Draft;
 use crate::picture::compose::pointer::Going;
 use crate::picture::layout::steps::{CLOSE, FREE, RING, THIN};
@@ -21,34 +20,27 @@ const INNER: f32 = 0.75;
 const HIDDEN: f64 = 0.38;
 
 /// Marks on all nodes that are held at a panel's time.
-pub(super) struct Grips;
-
-impl Overlay for Grips {
-    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
-        let time = draft.run.snapshot.time;
-        let held: Vec<_> = draft.scene.runs[draft.run.run].grips.iter().filter(|grip| grip.holds(time)).collect();
-        if draft.diverged || held.is_empty() || draft.position.is_empty() {
-            return;
+pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
+    let time = draft.run.snapshot.time;
+    let held: Vec<_> = draft.scene.runs[draft.run.run].grips.iter().filter(|grip| grip.holds(time)).collect();
+    if draft.diverged || held.is_empty() || draft.position.is_empty() {
+        return;
+    }
+    // Nodes that no element is left of hold nothing.
+    let whole = draft.whole_nodes();
+    let is_whole = |node: usize| whole.as_ref().is_none_or(|whole| whole[node]);
+    let visible = draft.bodies.cage().visible(&draft.position, &draft.lens);
+    for grip in held {
+        let nodes =
+            grip.nodes.iter().map(|&node| node as usize).filter(|&node| node < draft.position.len() && is_whole(node));
+        let nodes: Vec<_> = nodes.collect();
+        for &node in &nodes {
+            draft.mark(draft.position[node], HIDDEN + (1.0 - HIDDEN) * visible[node], marks);
         }
-        // Nodes that no element is left of hold nothing.
-        let whole = draft.whole_nodes();
-        let is_whole = |node: usize| whole.as_ref().is_none_or(|whole| whole[node]);
-        let visible = draft.bodies.cage().visible(&draft.position, &draft.lens);
-        for grip in held {
-            let nodes = grip
-                .nodes
-                .iter()
-                .map(|&node| node as usize)
-                .filter(|&node| node < draft.position.len() && is_whole(node));
-            let nodes: Vec<_> = nodes.collect();
-            for &node in &nodes {
-                draft.mark(draft.position[node], HIDDEN + (1.0 - HIDDEN) * visible[node], marks);
-            }
-            if grip.motion != Motion::Still {
-                let middle = nodes.iter().map(|&node| draft.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
-                let gap = PIN[usize::from(draft.flat)] + FREE;
-                draft.pointer((middle, draft.going(grip)), false, gap, draft.between_words(), marks);
-            }
+        if grip.motion != Motion::Still {
+            let middle = nodes.iter().map(|&node| draft.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
+            let gap = PIN[usize::from(draft.flat)] + FREE;
+            draft.pointer((middle, draft.going(grip)), false, gap, draft.between_words(), marks);
         }
     }
 }

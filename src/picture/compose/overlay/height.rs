@@ -1,6 +1,5 @@
 //! The height of a body above the ground, where the camera follows it: without it a body that flies high looks like one that rests.
 
-use super::Overlay;
 use crate::picture::compose::draft::{Draft, PixelBox};
 use crate::picture::layout::Scale;
 use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, HAIR, RING, SHORT};
@@ -20,16 +19,12 @@ const HIDDEN: f64 = 0.35;
 
 /// A line from the height of the lowest body down to the ground, faint where the body stands before it, with the height as a number. Where the
 /// ground lies beyond the panel, an arrow of a fixed length points down to it.
-pub(super) struct Height;
-
-impl Overlay for Height {
-    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
-        let time = draft.run.snapshot.time;
-        let ground = geometry::ground(&draft.scene.obstacles, time).filter(|_| draft.framing.moves && !draft.greyed);
-        let is_held = draft.scene.runs[draft.run.run].grips.iter().any(|grip| grip.holds(time));
-        if let Some(ground) = ground.filter(|_| draft.scene.view.labels.number && !is_held) {
-            draft.drop_line(ground, marks);
-        }
+pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
+    let time = draft.run.snapshot.time;
+    let ground = geometry::ground(&draft.scene.obstacles, time).filter(|_| draft.framing.moves && !draft.greyed);
+    let is_held = draft.scene.runs[draft.run.run].grips.iter().any(|grip| grip.holds(time));
+    if let Some(ground) = ground.filter(|_| draft.scene.view.labels.number && !is_held) {
+        draft.drop_line(ground, marks);
     }
 }
 

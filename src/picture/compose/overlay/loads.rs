@@ -1,7 +1,6 @@
 //! Loads: an arrow for each force on nodes, arrows on faces under pressure, and an arc for each torque.
 
-use super::{KeyPlace, Overlay, contacts};
-use crate::look::View;
+use super::{KeyPlace, contacts};
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::legend::{Sample, SampleKind};
@@ -22,85 +21,76 @@ const ARC: [f64; 2] = [1.25, 0.75];
 const PIECES: usize = 32;
 const HEAD: usize = 2;
 
-/// Arrows of loads.
-pub(super) struct Loads;
-
-impl Overlay for Loads {
-    fn is_explained(&self, view: &View) -> bool {
-        view.visible.loads
-    }
-
-    /// An arrow with its force or its pressure in words, and an arc with the largest torque.
-    fn samples<'c>(&self, composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-        let pixels = place.pixels_a_metre(composer);
-        let room = place.legend.arrow_length() / pixels;
-        let scales = Scales::new(composer.scene);
-        let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
-        let straight = match (force, pressure) {
-            (Some(force), _) => Some((number::round_below(force), scales.newton, "N")),
-            (None, Some(pressure)) => Some((number::round_below(pressure), scales.pascal, scales.unit)),
-            (None, None) => None,
-        };
-        let straight = straight.map(|(value, metres, unit)| {
-            let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
-            let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
-            let size = quantity(value, unit) + &also;
-            place.arrow(composer, [format!("load {size}"), size], value * metres * pixels)
-        });
-        let turning = (scales.torque > 0.0).then(|| {
-            let size = quantity(scales.torque, "N m");
-            Sample {
-                names: vec![format!("torque {size}").into(), size.into()],
-                kind: SampleKind::Arc(place.size(composer)),
-            }
-        });
-        straight.into_iter().chain(turning).collect()
-    }
-
-    /// A force that pushes its body ends at the middle of its nodes, and one that pulls it begins there.
-    fn draw(&self, draft: &Draft<'_>, marks: &mut Vec<Item>) {
-        if !draft.scene.view.visible.loads || draft.diverged || draft.position.is_empty() {
-            return;
+/// An arrow with its force or its pressure in words, and an arc with the largest torque.
+pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
+    let pixels = place.pixels_a_metre(composer);
+    let room = place.legend.arrow_length() / pixels;
+    let scales = Scales::new(composer.scene);
+    let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
+    let straight = match (force, pressure) {
+        (Some(force), _) => Some((number::round_below(force), scales.newton, "N")),
+        (None, Some(pressure)) => Some((number::round_below(pressure), scales.pascal, scales.unit)),
+        (None, None) => None,
+    };
+    let straight = straight.map(|(value, metres, unit)| {
+        let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
+        let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
+        let size = quantity(value, unit) + &also;
+        place.arrow(composer, [format!("load {size}"), size], value * metres * pixels)
+    });
+    let turning = (scales.torque > 0.0).then(|| {
+        let size = quantity(scales.torque, "N m");
+        Sample {
+            names: vec![format!("torque {size}").into(), size.into()],
+            kind: SampleKind::Arc(place.size(composer)),
         }
-        let scales = Scales::new(draft.scene);
-        let mut found = Vec::new();
-        for load in &draft.scene.runs[draft.run.run].loads {
-            let share = load.course().share(draft.run.snapshot.time);
-            if share == 0.0 {
-                continue;
+    });
+    straight.into_iter().chain(turning).collect()
+}
+
+/// Arrows of loads. A force that pushes its body ends at the middle of its nodes, and one that pulls it begins there.
+pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
+    if !draft.scene.view.visible.loads || draft.diverged || draft.position.is_empty() {
+        return;
+    }
+    let scales = Scales::new(draft.scene);
+    let mut found = Vec::new();
+    for load in &draft.scene.runs[draft.run.run].loads {
+        let share = load.course().share(draft.run.snapshot.time);
+        if share == 0.0 {
+            continue;
+        }
+        match load.pull() {
+            Pull::Dead(forces) => {
+                let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
+                let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
+                let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
+                found.extend(draft.arrow([start, start + way], 0.0, 1.0, arrows::with_halo));
             }
-            match load.pull() {
-                Pull::Dead(forces) => {
-                    let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
-                    let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
-                    let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
-                    found.extend(draft.arrow([start, start + way], 0.0, 1.0, arrows::with_halo));
-                }
-                Pull::Pressure(pressure, faces) => {
-                    let length = scales.pascal * pressure * share;
-                    let all: Vec<u32> = (0..faces.len() as u32).collect();
-                    let chosen = arrows::bearers(&all).into_iter().map(|face| &faces[face as usize]);
-                    found.extend(chosen.filter_map(|face| draft.pressed(face, &draft.position, length)));
-                }
-                Pull::CarriedPressure(pressure, triangles, points) => {
-                    let length = scales.pascal * pressure * share;
-                    let at: Vec<_> = (0..points.len()).map(|point| points.place(point, &draft.position)).collect();
-                    let all: Vec<u32> = (0..triangles.len() as u32).collect();
-                    let chosen = arrows::bearers(&all).into_iter().map(|face| &triangles[face as usize]);
-                    found.extend(chosen.filter_map(|face| draft.pressed(face, &at, length)));
-                }
-                Pull::Centrifugal(_) => {}
-                Pull::Torque(torque, _) => {
-                    let turn = ARC[1] * TAU * share / load.course().greatest();
-                    let (middle, axis) = (draft.middle_of(load), torque.normalize_or_zero());
-                    let nodes = load.nodes().unwrap_or_default().iter().map(|&node| draft.position[node as usize]);
-                    let farthest = nodes.fold(0.0, |far: f64, at| far.max((at - middle).cross(axis).length()));
-                    found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]).into_iter().flatten());
-                }
+            Pull::Pressure(pressure, faces) => {
+                let length = scales.pascal * pressure * share;
+                let all: Vec<u32> = (0..faces.len() as u32).collect();
+                let chosen = arrows::bearers(&all).into_iter().map(|face| &faces[face as usize]);
+                found.extend(chosen.filter_map(|face| draft.pressed(face, &draft.position, length)));
+            }
+            Pull::CarriedPressure(pressure, triangles, points) => {
+                let length = scales.pascal * pressure * share;
+                let at: Vec<_> = (0..points.len()).map(|point| points.place(point, &draft.position)).collect();
+                let all: Vec<u32> = (0..triangles.len() as u32).collect();
+                let chosen = arrows::bearers(&all).into_iter().map(|face| &triangles[face as usize]);
+                found.extend(chosen.filter_map(|face| draft.pressed(face, &at, length)));
+            }
+            Pull::Centrifugal(_) => {}
+            Pull::Torque(torque, _) => {
+                let turn = ARC[1] * TAU * share / load.course().greatest();
+                let (middle, axis) = (draft.middle_of(load), torque.normalize_or_zero());
+                let nodes = load.nodes().unwrap_or_default().iter().map(|&node| draft.position[node as usize]);
+                let farthest = nodes.fold(0.0, |far: f64, at| far.max((at - middle).cross(axis).length()));
+                found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]).into_iter().flatten());
             }
         }
-        marks.extend(farthest_first(found));
     }
+    marks.extend(farthest_first(found));
 }
 
 /// The scales of arrows.

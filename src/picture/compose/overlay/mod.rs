@@ -1,5 +1,5 @@
 //! Overlays: marks and curves over the bodies of panels, with their samples in the key. A new one is one file here, one line
-//! in [`MARKS`] or [`CURVES`], and its key in [`View`].
+//! in [`MARKS`] or [`CURVES`], one in [`EXPLAINED`] if it has samples, and its key in [`View`].
 
 mod contacts;
 mod displacements;
@@ -14,7 +14,7 @@ pub(super) use displacements::bearers;
 use super::Composer;
 use super::draft::Draft;
 use crate::colour::Colour;
-use crate::look::View;
+use crate::look::{Ghost, View};
 use crate::picture::layout::steps::{FREE, RING};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Legend, Sample, SampleKind};
@@ -22,32 +22,25 @@ use crate::picture::{Framing, Item, arrows};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
+/// Draws an overlay over a panel.
+type Draw = fn(&Draft<'_>, &mut Vec<Item>);
+
 /// The overlays below hairlines and the words of panels, in the order in which they are drawn.
-pub(super) const MARKS: [&dyn Overlay; 5] =
-    [&height::Height, &grips::Grips, &displacements::Displacements, &loads::Loads, &contacts::Contacts];
+pub(super) const MARKS: [Draw; 5] = [height::draw, grips::draw, displacements::draw, loads::draw, contacts::draw];
 /// The overlays above them.
-pub(super) const CURVES: [&dyn Overlay; 2] = [&ghost::GhostOutline, &paths::Paths];
+pub(super) const CURVES: [Draw; 2] = [ghost::draw, paths::draw];
 
-/// A kind of overlay.
-pub(super) trait Overlay {
-    /// Whether the key of a view explains it.
-    fn is_explained(&self, _: &View) -> bool {
-        false
-    }
+/// Whether the key of a view explains an overlay, and its samples there.
+type Explained = (fn(&View) -> bool, for<'c> fn(&'c Composer<'_>, &KeyPlace<'_>) -> Vec<Sample<'c>>);
 
-    /// Whether it has the colours of runs in a view.
-    fn has_colours_of_runs(&self, _: &View) -> bool {
-        false
-    }
-
-    /// Its samples in the key, if it is explained.
-    fn samples<'c>(&self, _: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-        Vec::new()
-    }
-
-    /// Draws it over a panel.
-    fn draw(&self, draft: &Draft<'_>, items: &mut Vec<Item>);
-}
+/// The overlays that keys explain, in the order of their samples.
+const EXPLAINED: [Explained; 5] = [
+    (|view| view.visible.displacements, displacements::samples),
+    (|view| view.visible.loads, loads::samples),
+    (|view| view.visible.contacts, contacts::samples),
+    (|view| view.ghost.is_some(), ghost::samples),
+    (|view| !view.paths.is_empty(), paths::samples),
+];
 
 /// A key, and the first panel that it explains.
 pub(in crate::picture) struct KeyPlace<'a> {
@@ -99,17 +92,22 @@ impl Draft<'_> {
     }
 }
 
-/// All overlays, in the order of their samples.
-pub(super) fn all() -> impl Iterator<Item = &'static dyn Overlay> {
-    MARKS.into_iter().chain(CURVES)
+/// The overlays that the key of a view explains.
+fn explained_in(view: &View) -> impl Iterator<Item = Explained> {
+    EXPLAINED.into_iter().filter(|(is_explained, _)| is_explained(view))
 }
 
 /// The number of overlays that the key of a view explains.
 pub(in crate::picture) fn explained(view: &View) -> usize {
-    all().filter(|overlay| overlay.is_explained(view)).count()
+    explained_in(view).count()
+}
+
+/// The samples of overlays in a key.
+pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> impl Iterator<Item = Sample<'c>> {
+    explained_in(&composer.scene.view).flat_map(move |(_, samples)| samples(composer, place))
 }
 
 /// Whether overlays of a view have the colours of runs.
 pub(super) fn have_colours_of_runs(view: &View) -> bool {
-    all().any(|overlay| overlay.has_colours_of_runs(view))
+    matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty()
 }
