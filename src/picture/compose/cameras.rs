@@ -23,9 +23,9 @@ const FILLED: f64 = 0.7;
 impl Composer<'_> {
     /// The number of columns for the panels of some runs: that of the scene, or the one with the largest bodies.
     pub(super) fn columns(&self, runs: &[usize]) -> usize {
-        let (view, words) = (&self.scene.view, self.words());
+        let view = &self.scene.view;
         let pixels = |columns: usize| {
-            let layout = words.around(runs, columns).layout;
+            let layout = self.around(runs, columns).layout;
             let panel = *layout.panels.first()?;
             let shot = self.shot(panel, layout.scale).map(|shot| shot.pixels);
             let still = || self.pixels_a_metre(panel, &Framing::still(&view.camera), layout.scale);

@@ -47,7 +47,7 @@ use glam::DVec3;
 use numbers::NumberPart;
 use overlay::KeyPlace;
 use std::sync::OnceLock;
-use words::{PageWords, Words};
+use words::PageWords;
 pub(crate) use words::{left_out, type_left_out};
 
 /// Composes frames of one scene.
@@ -150,7 +150,7 @@ impl<'a> Composer<'a> {
             return None;
         }
         let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
-        let layout = self.words().around(&runs, self.columns(&runs)).layout;
+        let layout = self.around(&runs, self.columns(&runs)).layout;
         let (panel, in_panel) = (layout.panels.first().filter(|_| layout.written.events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |&panel| in_panel.explained(panel, events));
         Some(Timeline::new(history, scene, || self.writer(layout.around), &layout, explained))
@@ -159,11 +159,6 @@ impl<'a> Composer<'a> {
     /// The bodies of a run.
     fn bodies(&self, run: usize) -> &Bodies<'a> {
         &self.bodies[self.bodies_of[run]]
-    }
-
-    /// The words of its pictures.
-    fn words(&self) -> Words<'_> {
-        Words { scene: self.scene, fonts: &self.fonts, palette: &self.palette, descriptions: &self.descriptions }
     }
 
     /// An empty writer, with type and lines of a scale.
@@ -233,7 +228,7 @@ impl<'a> Composer<'a> {
     /// Arranges the panels of some runs.
     fn arrange(&self, runs: &[usize]) -> Arranged {
         let columns = self.columns(runs);
-        let around = self.words().around(runs, columns);
+        let around = self.around(runs, columns);
         let (layout, scale) = (&around.layout, around.layout.scale);
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
         let numbers = self.numbers(runs, layout, shot.as_ref());
@@ -244,14 +239,13 @@ impl<'a> Composer<'a> {
     fn write(&self, frame: &Frame, arranged: &Arranged, framing: Option<&Framing>, writer: &mut Writer<'_>) {
         let &Arranged { columns, ref around, ref numbers, .. } = arranged;
         let (layout, with_clock) = (&around.layout, around.clock_above.is_none());
-        let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
-        let (names, seconds) = (words.names(&runs), words.seconds(&runs, layout));
+        let (names, seconds) = (self.names(&runs), self.seconds(&runs, layout));
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let &WordsShown { labels, events, .. } = &layout.written;
-            let heading = words.heading(at, &runs, &names, &seconds, layout);
+            let heading = self.heading(at, &runs, &names, &seconds, layout);
             let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
-            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(layout))[0] } else { 0.0 };
+            let taken = if has_clock { writer.clock_room(viewport, self.clock_label(layout))[0] } else { 0.0 };
             writer.heading(viewport, &heading, taken);
             if let (Some(timeline), Some(shown)) =
                 (self.timeline.as_ref().filter(|_| events), self.scene.runs.get(run.run))
@@ -260,7 +254,7 @@ impl<'a> Composer<'a> {
                 writer.events(viewport, timeline.events_of(run.run), colour, frame.time);
             }
             if has_clock {
-                writer.clock(viewport, &self.clock(frame), words.clock_label(layout));
+                writer.clock(viewport, &self.clock(frame), self.clock_label(layout));
             }
             let place = |numeral| numbers.get(numeral).map(|[left, _, width, _]| [left, left + width]);
             // The shown state of a run that diverges lacks the present number of turned-over elements.

@@ -62,7 +62,7 @@ impl Composer<'_> {
 
     /// Whether the scale bar of some runs in columns has no room.
     pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
-        let layout = self.words().around(runs, columns).layout;
+        let layout = self.around(runs, columns).layout;
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
         let has_bar = || self.numbers(runs, &layout, shot.as_ref()).get(NumberPart::Bar).is_some();
         self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !has_bar()

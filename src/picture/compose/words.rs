@@ -2,25 +2,16 @@
 
 use super::Composer;
 use super::overlay::have_colours_of_runs;
-use crate::look::{Labels, LineStyle, Palette, Plot, View};
-use crate::picture::caption::{self, Heading, WordRoom, Writer};
+use crate::look::{Labels, LineStyle, Plot};
+use crate::picture::caption::{self, Heading, WordRoom};
 use crate::picture::chart::{event, style};
 use crate::picture::description::{are_shortened, second_lines};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
-use crate::picture::text::{Fonts, Weight};
+use crate::picture::text::Weight;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use std::ops::RangeInclusive;
-
-/// The words of a scene.
-pub(super) struct Words<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) fonts: &'a Fonts,
-    pub(super) palette: &'a Palette,
-    /// The second line of each run.
-    pub(super) descriptions: &'a [String],
-}
 
 /// The text around panels, and the layout.
 #[derive(Debug)]
@@ -34,14 +25,11 @@ pub(super) struct PageWords {
     pub(super) clock_above: Option<Part>,
 }
 
-impl<'a> Words<'a> {
-    fn view(&self) -> &'a View {
-        &self.scene.view
-    }
-
+impl Composer<'_> {
     /// The text around the panels of some runs, in columns.
     pub(super) fn around(&self, runs: &[usize], columns: usize) -> PageWords {
-        let (view, scale, panels) = (self.view(), Layout::around(self.view()), runs.len());
+        let (view, panels) = (&self.scene.view, runs.len());
+        let scale = Layout::around(view);
         let (writer, width) = (self.writer(scale), f64::from(view.size[0]));
         // Panels' margins are no wider than the margins around them.
         let titles = writer.titles(scale, [&view.title, &view.caption], width - 2.0 * scale.margin());
@@ -89,17 +77,17 @@ impl<'a> Words<'a> {
     }
 
     /// The words below the clock.
-    pub(super) fn clock_label(&self, layout: &Layout) -> &'a str {
-        if layout.written.second { &self.view().clock } else { "" }
+    pub(super) fn clock_label(&self, layout: &Layout) -> &str {
+        if layout.written.second { &self.scene.view.clock } else { "" }
     }
 
     /// The names of runs.
-    pub(super) fn names(&self, runs: &[usize]) -> Vec<&'a str> {
+    pub(super) fn names(&self, runs: &[usize]) -> Vec<&str> {
         runs.iter().map(|&run| self.scene.runs.get(run).map_or("", |run| &*run.name)).collect()
     }
 
     /// The descriptions of runs, if panels have them.
-    fn described(&self, runs: &[usize], layout: &Layout) -> Vec<&'a str> {
+    fn described(&self, runs: &[usize], layout: &Layout) -> Vec<&str> {
         let own = |&run: &usize| self.descriptions.get(run).filter(|_| layout.written.labels.model);
         runs.iter().map(|run| own(run).map_or("", String::as_str)).collect()
     }
@@ -133,14 +121,14 @@ impl<'a> Words<'a> {
 
     /// The line of a run in the chart or among arrows, if there are any.
     fn sample(&self, run: usize, has_chart: bool) -> Option<LineStyle> {
-        let view = self.view();
+        let view = &self.scene.view;
         let has_arrows = view.visible.displacements && view.colour.is_none();
         let has_curves = have_colours_of_runs(view);
         if !view.labels.legend || !(has_chart || has_arrows || has_curves) {
             return None;
         }
         // Without a chart of runs, only colours count.
-        let line = style(&view.charts, run, self.scene, self.palette);
+        let line = style(&view.charts, run, self.scene, &self.palette);
         let has_dashes = has_chart && view.charts.iter().any(|chart| !matches!(chart, Plot::ByBody(_)));
         Some(if has_dashes { line } else { LineStyle { dash: &[], ..line } })
     }
@@ -155,14 +143,10 @@ impl<'a> Words<'a> {
         layout.written.labels.clock && self.writer(layout.scale).is_crowded(panel, &heading, label)
     }
 
-    fn writer(&self, scale: Scale) -> Writer<'_> {
-        Writer::new(self.palette, self.fonts, scale)
-    }
-
     /// The words without room in pictures of some runs, each with the consequence, and the runs whose names and whose
     /// descriptions are shortened.
-    fn left_out(&self, runs: &[usize], columns: usize) -> (Vec<String>, [Vec<&'a str>; 2]) {
-        let (view, PageWords { layout, .. }) = (self.view(), self.around(runs, columns));
+    fn without_room(&self, runs: &[usize], columns: usize) -> (Vec<String>, [Vec<&str>; 2]) {
+        let (view, PageWords { layout, .. }) = (&self.scene.view, self.around(runs, columns));
         let Labels { name, model, count, number, .. } = view.labels;
         let is_missed = |part: &Part| match part {
             Part::Name => name,
@@ -220,14 +204,13 @@ impl Composer<'_> {
 
     /// What has no room in pictures of runs with all of these numbers of columns.
     fn lacks(&self, runs: &[usize], columns: RangeInclusive<usize>) -> Vec<String> {
-        let words = self.words();
         // A thumbnail needs no words.
         if !Scale::legible(Layout::around(&self.scene.view).title()) {
             return Vec::new();
         }
-        let (mut told, mut shortened) = words.left_out(runs, *columns.start());
+        let (mut told, mut shortened) = self.without_room(runs, *columns.start());
         for columns in columns.clone().skip(1) {
-            let (there, also) = words.left_out(runs, columns);
+            let (there, also) = self.without_room(runs, columns);
             told.retain(|one| there.contains(one));
             shortened.iter_mut().zip(also).for_each(|(of, also)| of.retain(|run| also.contains(run)));
         }
