@@ -2,7 +2,7 @@
 
 use super::layout::steps::{APART, BESIDE, BOLD, MARGIN, NEAR, STRONG};
 use super::layout::tree::Solved;
-use super::layout::{self, Baselines, Layout, Part, Rectangle, Scale};
+use super::layout::{self, Layout, Part, Rectangle, Scale, WordPlaces};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
 use super::wrap::{balanced, cut, wrapped};
@@ -95,26 +95,6 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// The edges of the room for words in a panel (px).
-#[derive(Clone, Copy)]
-pub(super) struct WordRoom {
-    pub(super) left: f64,
-    right: f64,
-    pub(super) top: f64,
-}
-
-impl WordRoom {
-    pub(super) fn new(panel: Rectangle, scale: Scale) -> Self {
-        let [left, top, width, _] = panel.map(f64::from);
-        let margin = scale.margin();
-        Self { left: left + margin, right: left + width - margin, top }
-    }
-
-    pub(super) fn width(self) -> f64 {
-        (self.right - self.left).max(0.0)
-    }
-}
-
 /// The parts of a heading.
 pub(super) struct Heading<'a> {
     /// The letter that names the panel in text; empty for none.
@@ -186,18 +166,18 @@ impl Writer<'_> {
 
     /// Letter, name and second line, upper left. `taken` (px) is kept free at the right of the name.
     pub(super) fn heading(&mut self, panel: Rectangle, heading: &Heading<'_>, taken: f64) {
-        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let words = WordPlaces::new(self.scale, panel);
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let free = room.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 };
-        let baseline = room.top + lines.title;
-        let mut left = room.left;
+        let free = words.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 };
+        let baseline = words.title;
+        let mut left = words.left;
         if !heading.letter.is_empty() {
             self.left(&heading.letter, Weight::SemiBold, title, self.palette.second_text, left, baseline);
             left += self.fonts.width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
         }
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
         let reserved = if sample.is_some() { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
-        let free_for_name = free - (left - room.left) - reserved;
+        let free_for_name = free - (left - words.left) - reserved;
         // All names become smaller before one is cut.
         let size = self.size_of_names(heading, free_for_name);
         let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, size, free_for_name);
@@ -206,14 +186,7 @@ impl Writer<'_> {
             let left = left + self.fonts.width(&name, Weight::SemiBold, size) + BESIDE * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        self.left(
-            heading.second,
-            Weight::Regular,
-            caption,
-            self.palette.second_text,
-            room.left,
-            room.top + lines.second,
-        );
+        self.left(heading.second, Weight::Regular, caption, self.palette.second_text, words.left, words.second);
     }
 
     /// The common size of names in headings with a room (px). It is smaller than usual if one of them is too wide, but
@@ -254,7 +227,7 @@ impl Writer<'_> {
 
     /// Whether the heading leaves no room for the clock.
     pub(super) fn is_crowded(&self, panel: Rectangle, heading: &Heading<'_>, label: &str) -> bool {
-        let free = WordRoom::new(panel, self.scale).width() - self.scale.gap();
+        let free = WordPlaces::new(self.scale, panel).width() - self.scale.gap();
         let clock = self.clock_room(panel, label);
         self.heading_width(heading).iter().zip(clock).any(|(heading, clock)| heading + clock > free)
     }
@@ -267,18 +240,18 @@ impl Writer<'_> {
     }
 
     fn clock_label(&self, panel: Rectangle, label: &str) -> String {
-        let room = LABEL_SHARE * WordRoom::new(panel, self.scale).width();
+        let room = LABEL_SHARE * WordPlaces::new(self.scale, panel).width();
         self.fonts.shortened(label, Weight::Regular, self.scale.caption(), room)
     }
 
     /// The clock with its label, upper right.
     pub(super) fn clock(&mut self, panel: Rectangle, time: &str, label: &str) {
-        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let words = WordPlaces::new(self.scale, panel);
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let time = self.fonts.shortened(time, Weight::Regular, title, room.width());
-        self.right(&time, Weight::Regular, title, self.palette.text, room.right, room.top + lines.title);
+        let time = self.fonts.shortened(time, Weight::Regular, title, words.width());
+        self.right(&time, Weight::Regular, title, self.palette.text, words.right, words.title);
         let label = self.clock_label(panel, label);
-        self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
+        self.right(&label, Weight::Regular, caption, self.palette.second_text, words.right, words.second);
     }
 
     /// The width of the clock followed by its label (px) at any time.
@@ -307,7 +280,7 @@ impl Writer<'_> {
         (tally, names): (&Tally, &[&str]),
         snapshot: &Snapshot,
     ) {
-        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let words = WordPlaces::new(self.scale, panel);
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let Snapshot { turned_over, flat, broken, broken_springs, .. } = snapshot;
         let states = [&turned_over[..], &flat[..], &broken[..]];
@@ -322,16 +295,16 @@ impl Writer<'_> {
             (TURNED_OVER, 1..) => (self.palette.alarm_text, self.palette.alarm_text),
             _ => (self.palette.text, self.palette.second_text),
         };
-        let [(first, tally_room), (left, free)] = places.map(|[from, to]| (room.left + from, to - from));
-        let end = room.left + end;
-        let corner = [first, room.top + lines.caption];
+        let [(first, tally_room), (left, free)] = places.map(|[from, to]| (words.left + from, to - from));
+        let end = words.left + end;
+        let corner = [first, words.caption];
         tally.draw(states, self.palette, self.scale, tally_room, corner, &mut self.marks);
         let [count, all] = [count, turned_over.len()].map(number::count);
         // The widest count decides, so that it is the same in all frames. A number with an ellipsis is another number.
         let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
         let wordings = [(format!("{all} of {all}"), format!("{count} of {all}")), (all, count)];
         if let Some((_, count)) = wordings.into_iter().find(|(widest, _)| wide(widest) <= free) {
-            self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
+            self.left(&count, Weight::SemiBold, title, colour, left, words.count);
         }
         let (also, what) = if state == TURNED_OVER { (flattened, "flat") } else { (over, TURNED_OVER) };
         let with_others = (also > 0).then(|| format!("{state}, {} {what}", number::count(also)));
@@ -345,7 +318,7 @@ impl Writer<'_> {
             return;
         }
         let state = self.fonts.shortened(&state, Weight::Regular, caption, free);
-        self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
+        self.left(&state, Weight::Regular, caption, second, left, words.caption);
     }
 
     /// The width of the widest count of a number of elements (px), and of the widest count of the elements of bodies.
@@ -377,18 +350,18 @@ impl Writer<'_> {
 
     /// A number with its name, lower right, in the longest wording with room right of a place from the left margin (px).
     pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) {
-        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let words = WordPlaces::new(self.scale, panel);
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         // A number without its name means nothing.
         if !Scale::legible(caption) && !number.is_loud {
             return;
         }
-        let free = room.width() - taken - if taken > 0.0 { self.scale.gap() } else { 0.0 };
+        let free = words.width() - taken - if taken > 0.0 { self.scale.gap() } else { 0.0 };
         let mut wordings = number.wordings.iter();
         let Some([value, explained]) = wordings.find(|texts| self.number_width(number, texts) <= free) else { return };
-        self.right(value, number.weight(), title, self.palette.text, room.right, room.top + lines.count);
+        self.right(value, number.weight(), title, self.palette.text, words.right, words.count);
         let colour = self.palette.second_text;
-        self.right(explained, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
+        self.right(explained, Weight::Regular, caption, colour, words.right, words.caption);
     }
 
     /// The width of a scale bar of a length with its words (px).
@@ -404,19 +377,19 @@ impl Writer<'_> {
         [from, to]: [f64; 2],
         mut bars: impl Iterator<Item = (String, f64)>,
     ) -> Option<[f64; 2]> {
-        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let words = WordPlaces::new(self.scale, panel);
         let (unit, caption, colour) = (self.scale.unit, self.scale.caption(), self.palette.second_text);
         let (text, pixels) = bars.find(|(text, pixels)| self.bar_width(text, *pixels) <= to - from + 1e-6)?;
-        let middle = room.left + from.midpoint(to);
+        let middle = words.left + from.midpoint(to);
         let [length, thickness] = [pixels, STRONG * self.scale.line()].map(|length| length.round().max(1.0));
-        let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - NEAR * unit).round());
+        let (left, top) = ((middle - 0.5 * length).round(), (words.count - NEAR * unit).round());
         let tick = (NEAR * unit).round().max(thickness);
         let ends = [left, left + length - thickness].map(|x| [x, top - 0.5 * (tick - thickness), thickness, tick]);
         for [x, y, width, height] in [[left, top, length, thickness]].into_iter().chain(ends) {
             self.marks.push(Item::rectangle([x, y.round(), width, height], colour));
         }
         let wide = self.fonts.width(&text, Weight::Regular, caption);
-        self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, room.top + lines.caption);
+        self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, words.caption);
         Some([-0.5, 0.5].map(|side| from.midpoint(to) + side * pixels.max(wide)))
     }
 

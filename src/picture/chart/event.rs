@@ -4,9 +4,9 @@ use super::ring;
 use super::series::{Series, in_words};
 use crate::colour::Colour;
 use crate::look::Plot;
-use crate::picture::caption::{DIVERGES, RECORDING_ENDS, WordRoom, Writer};
+use crate::picture::caption::{DIVERGES, RECORDING_ENDS, Writer};
 use crate::picture::layout::steps::{GAP, NEAR};
-use crate::picture::layout::{Baselines, Rectangle, Scale};
+use crate::picture::layout::{Rectangle, Scale, WordPlaces};
 use crate::picture::number;
 use crate::picture::text::Weight;
 use crate::scene::Scene;
@@ -136,7 +136,7 @@ pub(in crate::picture) fn split(series: &[Series], end: f64) -> Option<f64> {
 impl Writer<'_> {
     /// The number of a run's events, from the first one on, whose words fit into a panel.
     pub(in crate::picture) fn explained(&self, panel: Rectangle, events: &[&Event]) -> usize {
-        let room = WordRoom::new(panel, self.scale).width();
+        let room = WordPlaces::new(self.scale, panel).width();
         let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 2) <= room;
         (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
     }
@@ -159,7 +159,7 @@ impl Writer<'_> {
         colour: Colour,
         now: f64,
     ) {
-        let (room, lines) = (WordRoom::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let words = WordPlaces::new(self.scale, panel);
         let (unit, size) = (self.scale.type_unit(), self.scale.caption());
         let events: Vec<_> = events.collect();
         let number_size = self.scale.small();
@@ -167,8 +167,8 @@ impl Writer<'_> {
         let [beside, apart] = [NEAR, GAP].map(|length| length * unit);
         let wide = |words: &str| 2.0 * radius + beside + self.fonts.width(words, Weight::Regular, size);
         let width = |at: usize| self.events_width(events.iter().map(|(_, event)| *event), at);
-        let Some(at) = (0..=2).find(|&at| width(at) <= room.width()) else { return };
-        let (mut left, baseline) = (room.left, room.top + lines.events);
+        let Some(at) = (0..=2).find(|&at| width(at) <= words.width()) else { return };
+        let (mut left, baseline) = (words.left, words.events);
         let palette = self.palette;
         for (number, event) in &events {
             let [ground, letter] =

@@ -3,10 +3,10 @@
 use super::Composer;
 use super::overlay::have_colours_of_runs;
 use crate::look::{Labels, LineStyle, Plot};
-use crate::picture::caption::{self, Heading, WordRoom};
+use crate::picture::caption::{self, Heading};
 use crate::picture::chart::{event, style};
 use crate::picture::description::{are_shortened, second_lines};
-use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
+use crate::picture::layout::{self, Layout, Part, Scale, Wanted, WordPlaces};
 use crate::picture::legend::Legend;
 use crate::picture::text::Weight;
 use crate::runner::history::History;
@@ -94,7 +94,7 @@ impl Composer<'_> {
 
     /// The second lines of the panels of runs.
     pub(super) fn seconds(&self, runs: &[usize], layout: &Layout) -> Vec<String> {
-        let room = layout.panels.first().map_or(0.0, |&panel| WordRoom::new(panel, layout.scale).width());
+        let room = layout.panels.first().map_or(0.0, |&panel| WordPlaces::new(layout.scale, panel).width());
         let size = layout.scale.caption();
         second_lines(&self.described(runs, layout), |text| self.fonts.width(text, Weight::Regular, size) <= room)
     }
@@ -174,7 +174,7 @@ impl Composer<'_> {
         let mut shortened = [Vec::new(), Vec::new()];
         for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
             let heading = self.heading(at, runs, &names, &seconds, &layout);
-            let room = WordRoom::new(panel, layout.scale).width();
+            let room = WordPlaces::new(layout.scale, panel).width();
             let is_shortened = [writer.is_shortened(&heading, room), are_shortened[at]];
             for (of, is_shortened) in shortened.iter_mut().zip(is_shortened) {
                 of.extend(is_shortened.then_some(names[at]));

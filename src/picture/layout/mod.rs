@@ -508,8 +508,12 @@ impl Scale {
     }
 }
 
-/// The lines of text in a panel (px from its top).
-pub(super) struct Baselines {
+/// The places of the words in a panel (px).
+pub(super) struct WordPlaces {
+    /// The left and the right end of their room.
+    pub(super) left: f64,
+    pub(super) right: f64,
+    // Baselines.
     pub(super) title: f64,
     pub(super) second: f64,
     pub(super) events: f64,
@@ -517,19 +521,27 @@ pub(super) struct Baselines {
     pub(super) caption: f64,
 }
 
-impl Baselines {
+impl WordPlaces {
     pub(super) fn new(scale: Scale, panel: Rectangle) -> Self {
         let ([name, second, _], [count, below]) = (scale.rows(), scale.numbers());
+        let [left, start, width, height] = panel.map(f64::from);
         let [top, bottom] = scale.edges.map(|edge| edge * scale.unit);
-        let bottom = f64::from(panel[3]) - bottom;
+        let bottom = height - bottom;
         let [large, small] = [scale.title(), scale.caption()].map(|size| ASCENT * size);
         Self {
-            title: top + large,
-            second: top + name + small,
-            events: top + name + second + small,
-            count: bottom - below - count + large,
-            caption: bottom - below + small,
+            left: left + scale.margin(),
+            right: left + width - scale.margin(),
+            title: start + (top + large),
+            second: start + (top + name + small),
+            events: start + (top + name + second + small),
+            count: start + (bottom - below - count + large),
+            caption: start + (bottom - below + small),
         }
+    }
+
+    /// The width of their room.
+    pub(super) fn width(&self) -> f64 {
+        (self.right - self.left).max(0.0)
     }
 }
 
@@ -634,7 +646,7 @@ mod tests {
         assert_eq!((large.line(), large.margin()), (usual.line(), usual.margin()));
         // Each row has room for its type.
         let panel = [0, 0, 640, 720];
-        let rows = Baselines::new(large, panel);
+        let rows = WordPlaces::new(large, panel);
         assert!(rows.second - rows.title > large.caption() && rows.caption - rows.count >= large.caption());
         let [_, top, _, height] = clear_of_words(panel, &view, large);
         assert!(f64::from(top) > rows.second && f64::from(top + height) < rows.count - large.title());
