@@ -46,7 +46,7 @@ impl Draft<'_> {
         };
         let hatches = self.bodies.soft_of.iter().zip(self.bodies.nodes()).map(hatch).collect();
         let surfaces = Surfaces { draft: self, position: &self.position, hatches };
-        let (over, broken) = (&self.run.snapshot.turned_over, &self.run.snapshot.broken);
+        let (over, broken) = (&self.snapshot.turned_over, &self.snapshot.broken);
         let fine = &self.bodies.skin.fine;
         let mut sets = boundaries(self.body, over, broken);
         let is_cage = |side: &Side| self.is_covered(side);
@@ -111,7 +111,7 @@ impl Draft<'_> {
 
     /// Whether a carried surface is seen in place of a face. Faces that a broken element uncovers are seen themselves.
     pub(super) fn is_covered(&self, side: &Side) -> bool {
-        let (face, faces, broken) = (side.face as usize, self.body.faces(), &self.run.snapshot.broken);
+        let (face, faces, broken) = (side.face as usize, self.body.faces(), &self.snapshot.broken);
         let mut beside = [faces.inner[face], faces.outer[face]].into_iter().flatten();
         !beside.any(|element| is_broken(broken, element))
             && self.bodies.skin.fine.iter().any(|fine| fine.faces.contains(&face))
@@ -121,10 +121,10 @@ impl Draft<'_> {
     /// from their middle (m).
     pub(super) fn bare_lines(&self) -> Vec<([DVec3; 2], bool)> {
         let mut lines = Vec::new();
-        let broken = &self.run.snapshot.broken;
+        let broken = &self.snapshot.broken;
         for &element in self.bodies.bare.iter().filter(|&&element| !is_broken(broken, element as u32)) {
             let nodes = &self.body.elements()[element];
-            let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
+            let over = self.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let at = |node: u32| self.position[node as usize];
             let edges = self.body.topology().edges_of(element);
             lines.extend(edges.iter().map(|edge| (edge.map(at), over)));
@@ -140,7 +140,7 @@ impl Draft<'_> {
     /// a field or their body colours.
     pub(super) fn strokes(&self) -> Vec<Stroke> {
         let visible = self.scene.view.visible;
-        let (over, broken) = (&self.run.snapshot.turned_over, &self.run.snapshot.broken);
+        let (over, broken) = (&self.snapshot.turned_over, &self.snapshot.broken);
         let (wire, edges) = (self.wire(), &self.bodies.edges);
         let mut strokes = Vec::new();
         if self.position.is_empty() {
@@ -153,7 +153,7 @@ impl Draft<'_> {
         if !visible.surfaces && springs.is_empty() {
             strokes.extend(wire.edges(edges, [over, broken], false));
         }
-        let strain = self.composer.strain_of_springs(self.run.run).map(|scale| (&self.composer.ramp[..], scale));
+        let strain = self.composer.strain_of_springs(self.run).map(|scale| (&self.composer.ramp[..], scale));
         let on_skin: Vec<_>;
         let springs = if wire.hides_inside() && !self.flat {
             let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.bodies.cage().holds(node));
@@ -174,7 +174,7 @@ impl Draft<'_> {
 
     /// The springs of the run that are shown and not broken.
     fn whole_springs(&self) -> Cow<'_, [[u32; 2]]> {
-        let (all, broken) = (&self.composer.springs[self.run.run], &self.run.snapshot.broken_springs);
+        let (all, broken) = (&self.composer.springs[self.run], &self.snapshot.broken_springs);
         if !broken.contains(&true) {
             return Cow::Borrowed(all);
         }

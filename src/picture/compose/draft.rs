@@ -29,7 +29,9 @@ pub(super) struct Draft<'a> {
     pub(super) bodies: &'a Bodies<'a>,
     /// All bodies as one.
     pub(super) body: &'a Body,
-    pub(super) run: Shown<'a>,
+    pub(super) run: usize,
+    /// The shown state of the run.
+    pub(super) snapshot: &'a Snapshot,
     pub(super) framing: &'a Framing,
     pub(super) viewport: Rectangle,
     /// The part of it without words.
@@ -70,13 +72,6 @@ pub(super) struct Draft<'a> {
     pub(super) palette: Palette,
 }
 
-/// A run with its shown state.
-#[derive(Clone, Copy)]
-pub(super) struct Shown<'a> {
-    pub(super) run: usize,
-    pub(super) snapshot: &'a Snapshot,
-}
-
 impl<'a> Draft<'a> {
     /// Collects the data of a panel.
     pub(super) fn new(
@@ -89,15 +84,14 @@ impl<'a> Draft<'a> {
         let scene = composer.scene;
         let (view, bodies) = (&scene.view, composer.bodies(run.run));
         let body = bodies.body();
-        let greyed = run.shown().status != Status::Ok;
-        let diverged = run.has_diverged() && run.last_fit.is_none();
-        let run = Shown { run: run.run, snapshot: run.shown() };
+        let snapshot = run.shown();
+        let greyed = snapshot.status != Status::Ok;
         let lens = Lens::new(view, framing, body.dimension(), viewport.map(f64::from), scale.unit);
         // Without positions nothing is drawn.
-        let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
+        let position = if snapshot.position.len() == body.len() { &snapshot.position[..] } else { &[] };
         let position = finite(position, FARTHEST * view.side);
         // A greyed body shows no values.
-        let field = if greyed { &[][..] } else { &run.snapshot.field[..] };
+        let field = if greyed { &[][..] } else { &snapshot.field[..] };
         // If springs show their strain, the body has no colours.
         let shown = view.colour.as_ref().filter(|_| composer.strain_of_springs(run.run).is_none());
         let shades = shown.map(|scale| Shades::new(body, scale, field));
@@ -114,7 +108,8 @@ impl<'a> Draft<'a> {
             scene,
             bodies,
             body,
-            run,
+            run: run.run,
+            snapshot,
             framing,
             viewport,
             clear,
@@ -131,7 +126,7 @@ impl<'a> Draft<'a> {
             of_nodes,
             element: lens.focal * bodies.side / if flat { 1.0 } else { framing.distance },
             flat,
-            diverged,
+            diverged: run.has_diverged() && run.last_fit.is_none(),
             greyed,
             palette,
             lines_of_bodies: if flat { palette.bodies_flat } else { palette.bodies }
@@ -181,7 +176,7 @@ impl<'a> Draft<'a> {
 
     /// Whether each node belongs to more than broken elements; `None` if no element is broken.
     pub(super) fn whole_nodes(&self) -> Option<Vec<bool>> {
-        let broken = &self.run.snapshot.broken;
+        let broken = &self.snapshot.broken;
         broken.contains(&true).then(|| {
             let mut whole = vec![false; self.body.len()];
             let elements = self.body.elements().iter().zip(broken).filter(|(_, broken)| !*broken);

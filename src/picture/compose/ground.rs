@@ -55,7 +55,7 @@ impl Draft<'_> {
         if self.flat {
             return None;
         }
-        let (normal, height) = geometry::ground(&self.scene.obstacles, self.run.snapshot.time)?;
+        let (normal, height) = geometry::ground(&self.scene.obstacles, self.snapshot.time)?;
         let (plane, anchor) = self.plane(normal, height);
         let view = &self.scene.view;
         let farther = self.farther(&plane);
@@ -104,7 +104,7 @@ impl Draft<'_> {
 
     /// The plane of the ground, and a point on lines of its grid (m): the origin of the world, moved with the floor.
     fn plane(&self, normal: DVec3, height: f64) -> (Plane, DVec3) {
-        let time = self.run.snapshot.time;
+        let time = self.snapshot.time;
         let mut plane = Plane::new(normal, (height - normal.dot(self.origin)) / self.side);
         let mut anchor = DVec3::ZERO;
         let moving = |one: &&Obstacle| one.motion != Motion::Still && one.floor(time) == Some((normal, height));
@@ -137,7 +137,7 @@ impl Draft<'_> {
     fn casters(&self, staged: &Staged) -> Casters<'_> {
         let Bodies { skin, seams, .. } = self.bodies;
         let relative = |at: &DVec3| (at - self.origin) / self.side;
-        let broken = &self.run.snapshot.broken;
+        let broken = &self.snapshot.broken;
         let mut casters = if self.skin.is_empty() {
             Casters::new(Vec::new(), &[], &[])
         } else if broken.contains(&true) {

@@ -40,7 +40,7 @@ impl Draft<'_> {
             floor: self.floor(&staged),
             sound,
             turned_over,
-            dotted: self.run.snapshot.flat.contains(&true),
+            dotted: self.snapshot.flat.contains(&true),
             greyed: self.greyed,
             lines,
             borders,
@@ -113,7 +113,7 @@ impl Draft<'_> {
             };
             far.is_some_and(|far| is_out(at(far)))
         };
-        let is_whole = !self.skin.is_empty() && !self.run.snapshot.broken.contains(&true);
+        let is_whole = !self.skin.is_empty() && !self.snapshot.broken.contains(&true);
         !is_whole || !skin.fine.is_empty() || seams.iter().any(is_bent_inwards)
     }
 

@@ -53,7 +53,7 @@ impl Draft<'_> {
     /// All floors, below the body.
     pub(super) fn floors(&self, marks: &mut Vec<Item>) {
         for obstacle in &self.scene.obstacles {
-            if let Some(floor) = half_space(obstacle, self.run.snapshot.time) {
+            if let Some(floor) = half_space(obstacle, self.snapshot.time) {
                 self.floor_in_plane(floor, obstacle.motion == Motion::Still, marks);
             }
         }
@@ -118,12 +118,11 @@ impl Draft<'_> {
             return;
         }
         let (mut sound, mut turned_over) = (Vec::new(), Vec::new());
-        let has_sign = |&(element, nodes): &(usize, &[u32])| {
-            nodes.len() > 2 && !is_broken(&self.run.snapshot.broken, element as u32)
-        };
+        let has_sign =
+            |&(element, nodes): &(usize, &[u32])| nodes.len() > 2 && !is_broken(&self.snapshot.broken, element as u32);
         for (element, nodes) in self.body.elements().iter().enumerate().filter(has_sign) {
             let corners: Vec<_> = nodes.iter().filter_map(|&node| self.pixel(self.position[node as usize])).collect();
-            let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
+            let over = self.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let set = if over { &mut turned_over } else { &mut sound };
             set.push((roomiest(&corners), corners));
         }

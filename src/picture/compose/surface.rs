@@ -365,7 +365,7 @@ impl Surfaces<'_> {
 
     /// Whether a face belongs to a flat element.
     fn is_flat(&self, side: &Side) -> bool {
-        side.element.and_then(|element| self.draft.run.snapshot.flat.get(element as usize)).copied().unwrap_or(false)
+        side.element.and_then(|element| self.draft.snapshot.flat.get(element as usize)).copied().unwrap_or(false)
     }
 
     /// Cuts a face into triangles and adds them to a mesh, with dots or, without a value, with the hatch.

@@ -25,12 +25,12 @@ pub(in crate::picture) struct Staging<'a> {
 impl<'a> Staging<'a> {
     /// The obstacles of a panel.
     pub(in crate::picture) fn new(draft: &'a Draft<'a>) -> Self {
-        let Draft { scene, body, bodies, run, .. } = *draft;
-        let broken = &run.snapshot.broken;
+        let Draft { scene, body, bodies, snapshot, .. } = *draft;
+        let broken = &snapshot.broken;
         let left = || triangles(body, &boundaries(body, &[], broken)[0]);
         Self {
             draft,
-            ground: geometry::ground(&scene.obstacles, run.snapshot.time),
+            ground: geometry::ground(&scene.obstacles, snapshot.time),
             skin: (scene.view.visible.surfaces && !draft.diverged).then(|| bodies.cage()),
             left: broken.contains(&true).then(left),
         }
@@ -38,7 +38,7 @@ impl<'a> Staging<'a> {
 
     /// The time of the panel's state (s).
     pub(super) fn time(&self) -> f64 {
-        self.draft.run.snapshot.time
+        self.draft.snapshot.time
     }
 
     /// The size of the body (m).

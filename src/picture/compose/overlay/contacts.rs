@@ -29,7 +29,7 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
 /// Dots and arrows of contact. Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as
 /// loads are filled. Dots lie above all arrows.
 pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
-    let (snapshot, palette) = (&draft.run.snapshot, &draft.composer.palette);
+    let (snapshot, palette) = (draft.snapshot, &draft.composer.palette);
     if !draft.scene.view.visible.contacts || draft.diverged {
         return;
     }

@@ -28,10 +28,10 @@ pub(super) fn draw(draft: &Draft<'_>, curves: &mut Vec<Item>) {
     let Some((_, colour)) = look(draft.composer) else { return };
     match draft.scene.view.ghost {
         Some(Ghost::Rest) => {
-            let bodies = &draft.scene.runs[draft.run.run].bodies;
-            draft.outline(&bodies.placed(&draft.run.snapshot.placements), colour, curves);
+            let bodies = &draft.scene.runs[draft.run].bodies;
+            draft.outline(&bodies.placed(&draft.snapshot.placements), colour, curves);
         }
-        Some(Ghost::Run(run)) if run != draft.run.run => {
+        Some(Ghost::Run(run)) if run != draft.run => {
             let other = draft.others.iter().find(|other| other.run == run);
             if let Some(other) = other.filter(|other| other.snapshot.status == Status::Ok) {
                 draft.outline(&other.snapshot.position, colour, curves);

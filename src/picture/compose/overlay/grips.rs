@@ -21,8 +21,8 @@ const HIDDEN: f64 = 0.38;
 
 /// Marks on all nodes that are held at a panel's time.
 pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
-    let time = draft.run.snapshot.time;
-    let held: Vec<_> = draft.scene.runs[draft.run.run].grips.iter().filter(|grip| grip.holds(time)).collect();
+    let time = draft.snapshot.time;
+    let held: Vec<_> = draft.scene.runs[draft.run].grips.iter().filter(|grip| grip.holds(time)).collect();
     if draft.diverged || held.is_empty() || draft.position.is_empty() {
         return;
     }
@@ -48,7 +48,7 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
 impl Draft<'_> {
     /// The motion of the middle of dragged nodes.
     fn going(&self, grip: &Grip) -> Going {
-        let (half, now) = (0.25 / self.scene.frames_per_second, self.run.snapshot.time);
+        let (half, now) = (0.25 / self.scene.frames_per_second, self.snapshot.time);
         let shift = |time: f64| grip.motion.pose(time.clamp(grip.from, grip.until)).shift;
         let [before, after] = [now - half, now + half].map(shift);
         Going { velocity: (after - before) / (2.0 * half), greatest: grip.motion.greatest_speed(0.0) }

@@ -20,9 +20,9 @@ const HIDDEN: f64 = 0.35;
 /// A line from the height of the lowest body down to the ground, faint where the body stands before it, with the height as a number. Where the
 /// ground lies beyond the panel, an arrow of a fixed length points down to it.
 pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
-    let time = draft.run.snapshot.time;
+    let time = draft.snapshot.time;
     let ground = geometry::ground(&draft.scene.obstacles, time).filter(|_| draft.framing.moves && !draft.greyed);
-    let is_held = draft.scene.runs[draft.run.run].grips.iter().any(|grip| grip.holds(time));
+    let is_held = draft.scene.runs[draft.run].grips.iter().any(|grip| grip.holds(time));
     if let Some(ground) = ground.filter(|_| draft.scene.view.labels.number && !is_held) {
         draft.drop_line(ground, marks);
     }

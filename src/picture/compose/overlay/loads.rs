@@ -55,8 +55,8 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
     }
     let scales = Scales::new(draft.scene);
     let mut found = Vec::new();
-    for load in &draft.scene.runs[draft.run.run].loads {
-        let share = load.course().share(draft.run.snapshot.time);
+    for load in &draft.scene.runs[draft.run].loads {
+        let share = load.course().share(draft.snapshot.time);
         if share == 0.0 {
             continue;
         }

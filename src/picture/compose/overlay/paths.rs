@@ -28,11 +28,11 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<S
 
 /// Paths of the centre and of nodes up to the present moment, for the known part of the run's time series.
 pub(super) fn draw(draft: &Draft<'_>, curves: &mut Vec<Item>) {
-    let snapshot = &draft.run.snapshot;
-    let own = draft.composer.traced.iter().find(|series| series.run == draft.run.run);
+    let snapshot = draft.snapshot;
+    let own = draft.composer.traced.iter().find(|series| series.run == draft.run);
     let Some(own) = own.filter(|_| snapshot.position.len() == draft.body.len()) else { return };
     let (colour, halo) =
-        (draft.scene.runs[draft.run.run].line(&draft.composer.palette).colour, draft.composer.palette.background);
+        (draft.scene.runs[draft.run].line(&draft.composer.palette).colour, draft.composer.palette.background);
     let mut items = Vec::new();
     for (traced, path) in draft.scene.view.paths.iter().zip(&own.paths) {
         let width = if *traced == Traced::Centre { STRONG } else { THIN };
