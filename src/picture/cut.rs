@@ -22,7 +22,7 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    /// No cuts yet, for a number of nodes.
+    /// No cuts yet, for a number of nodes; without nodes nothing is cut.
     pub(super) fn new(nodes: usize) -> Self {
         Self { faces: Vec::new(), nodes: vec![1; nodes] }
     }
@@ -34,11 +34,6 @@ impl Cuts {
             let most = &mut self.nodes[node as usize];
             *most = cells.max(*most);
         }
-    }
-
-    /// No cuts.
-    pub(super) fn none() -> Self {
-        Self { faces: Vec::new(), nodes: Vec::new() }
     }
 
     /// Pieces of an edge. They depend only on its nodes, so all its faces have the same number, at least the needed
@@ -201,6 +196,6 @@ mod tests {
         faces.iter().for_each(|(corners, cells)| cuts.add(corners, *cells));
         assert_eq!(cuts.face(0, faces[0].0), Cut { cells: 2, sides: [2, 5, 2, 2] });
         assert_eq!(cuts.face(1, faces[1].0), Cut { cells: 5, sides: [5; 4] });
-        assert_eq!(Cuts::none().face(0, faces[0].0), Cut { cells: 1, sides: [1; 4] });
+        assert_eq!(Cuts::new(0).face(0, faces[0].0), Cut { cells: 1, sides: [1; 4] });
     }
 }

@@ -37,13 +37,18 @@ impl Ears {
 
 /// The corners of a polygon in the plane of its mean normal, oriented counter-clockwise.
 fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
-    let next = corners.iter().cycle().skip(1);
-    let normal: DVec3 = corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum();
+    let normal = newell(corners);
     let largest = normal.abs().max_element();
     let normal = (normal / largest).try_normalize()?;
     let first = normal.any_orthonormal_vector();
     let second = normal.cross(first);
     Some(corners.iter().map(|&at| at - corners[0]).map(|at| DVec2::new(at.dot(first), at.dot(second))).collect())
+}
+
+/// The mean normal of a polygon, with twice the length of its area (Newell's method).
+pub(super) fn newell(corners: &[DVec3]) -> DVec3 {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()
 }
 
 /// The triangles of a polygon that is not convex and does not cross itself, by cutting off its ears; `None` for others.

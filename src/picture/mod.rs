@@ -332,6 +332,11 @@ impl LineKind {
     pub(crate) fn is_alarm(self) -> bool {
         matches!(self, Self::AlarmEdge | Self::AlarmContour)
     }
+
+    /// The kind of the contours of surfaces with edges of this kind.
+    pub(crate) fn contour(self) -> Self {
+        if self.is_alarm() { Self::AlarmContour } else { Self::Contour }
+    }
 }
 
 /// A straight coloured line in space.

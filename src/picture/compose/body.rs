@@ -3,7 +3,7 @@
 use super::Composer;
 use super::draft::Draft;
 use crate::look::ColourScale;
-use crate::picture::compose::surface::{Hatch, Lines, SurfaceLines, Surfaces};
+use crate::picture::compose::surface::{Hatch, SurfaceLines, Surfaces};
 use crate::picture::compose::wire::Wire;
 use crate::picture::layout::Scale;
 use crate::picture::layout::steps::{CLOSE, RING, THIN};
@@ -45,7 +45,7 @@ impl Draft<'_> {
             false => Hatch { period: HATCH_PERIOD * (soft * self.side), middle: None },
         };
         let hatches = self.bodies.soft_of.iter().zip(self.bodies.nodes()).map(hatch).collect();
-        let surfaces = Surfaces { draft: self, position: &self.position, hatches };
+        let surfaces = Surfaces { draft: self, hatches };
         let (over, broken) = (&self.snapshot.turned_over, &self.snapshot.broken);
         let fine = &self.bodies.skin.fine;
         let mut sets = boundaries(self.body, over, broken);
@@ -62,11 +62,9 @@ impl Draft<'_> {
             sets[1].extend(inside.into_iter().filter(|side| is_cage(side)));
         }
         let total = sets.iter().map(Vec::len).sum();
-        let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
-        surfaces.add(&sets[0], total, kinds, &mut sound, lines);
-        let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
+        surfaces.add(&sets[0], total, LineKind::Edge, &mut sound, lines);
         let of_sound = lines.borders.len();
-        surfaces.add(&sets[1], total, kinds, &mut turned_over, lines);
+        surfaces.add(&sets[1], total, LineKind::AlarmEdge, &mut turned_over, lines);
         // A border of both sets counts once.
         let shared: HashSet<_> = lines.borders[of_sound..].iter().filter_map(|border| border.edge).collect();
         let mut at = 0;

@@ -5,7 +5,7 @@ use super::draft::Draft;
 use crate::bins::Bins;
 use crate::look::BODIES;
 use crate::picture::cut::{CutPatch, CutPatches, Cuts};
-use crate::picture::ears;
+use crate::picture::ears::{self, newell};
 use crate::picture::field::Shades;
 use crate::picture::measures::SMALLEST_ELEMENT;
 use crate::picture::narrow::{narrow, narrow_count, narrow_point};
@@ -42,7 +42,6 @@ const DARK: f64 = 13.0;
 /// Turns faces into the parts of a panel.
 pub(super) struct Surfaces<'a> {
     pub(super) draft: &'a Draft<'a>,
-    pub(super) position: &'a [DVec3],
     /// The hatch of each body.
     pub(super) hatches: Vec<Hatch>,
 }
@@ -52,13 +51,6 @@ pub(super) struct Surfaces<'a> {
 pub(super) struct Hatch {
     pub(super) period: f64,
     pub(super) middle: Option<DVec3>,
-}
-
-/// Kinds of lines on a surface.
-#[derive(Clone, Copy)]
-pub(super) struct Lines {
-    pub(super) edge: LineKind,
-    pub(super) contour: LineKind,
 }
 
 /// One face cut into triangles. Its memory is reused for the next one.
@@ -191,7 +183,7 @@ impl Surfaces<'_> {
     }
 
     pub(super) fn at(&self, node: u32) -> DVec3 {
-        self.position[node as usize]
+        self.draft.position[node as usize]
     }
 
     /// The corners of a face as seen from outside of the set that it bounds.
@@ -206,7 +198,7 @@ impl Surfaces<'_> {
     /// Adds a surface to a mesh and its lines to the lines.
     ///
     /// There are `total` faces in this and other surfaces.
-    pub(super) fn add(&self, faces: &[Side], total: usize, kinds: Lines, mesh: &mut Mesh, lines: &mut SurfaceLines) {
+    pub(super) fn add(&self, faces: &[Side], total: usize, kind: LineKind, mesh: &mut Mesh, lines: &mut SurfaceLines) {
         if faces.is_empty() {
             return;
         }
@@ -219,10 +211,10 @@ impl Surfaces<'_> {
         } else {
             0
         });
-        let is_edged = self.is_fine() && self.edges(kinds)[0];
+        let is_edged = self.is_fine() && self.edges(kind)[0];
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
         let mut last = Vec::new();
-        let is_inside_out = kinds.edge != LineKind::Edge;
+        let is_inside_out = kind != LineKind::Edge;
         let (mut patch, mut borders) = (Patch::default(), FaceSides::default());
         borders.sides.reserve(4 * faces.len());
         borders.facing.reserve(8 * faces.len());
@@ -233,7 +225,7 @@ impl Surfaces<'_> {
             let grid = self.bilinear(&patch.nodes, ears).map(|corners| grids.of(cuts.face(at, corners)));
             let before = mesh.triangles.len();
             // Turned-over elements are hatched, flat ones among the others dotted.
-            let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
+            let dots = (kind == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
             self.emit(side, ears, dots, grid, &mut patch, mesh);
             if is_edged {
                 note_edges(&patch, grid, &mut mesh.edges);
@@ -241,31 +233,31 @@ impl Surfaces<'_> {
             if patch.facing.iter().all(|&seen| (seen < 0.0) != is_inside_out) {
                 last.extend(mesh.triangles.drain(before..));
             }
-            self.inner_contours(&patch, kinds, lines);
+            self.inner_contours(&patch, kind, lines);
             note_borders(&patch, ears, grid, &cuts, &mut borders);
         }
         mesh.triangles.append(&mut last);
         let sides = borders.sorted(self.draft.body.len());
         for edge in sides.chunk_by(|one, other| ordered(one.ends) == ordered(other.ends)) {
-            self.edge(edge, &mut borders, kinds, lines);
+            self.edge(edge, &mut borders, kind, lines);
         }
     }
 
     /// The lines along one edge, at which the sides of some faces meet.
-    fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, kinds: Lines, lines: &mut SurfaceLines) {
+    fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, kind: LineKind, lines: &mut SurfaceLines) {
         let [a, b] = ordered(sides[0].ends);
         let (start, end) = (self.at(a), self.at(b));
         let faces_away = |side: &FaceSide| borders.of(side).iter().all(|&seen| seen < 0.0);
-        let is_hidden = kinds.edge == LineKind::Edge && sides.iter().all(faces_away);
-        let [in_front, behind] = self.edges(kinds);
+        let is_hidden = kind == LineKind::Edge && sides.iter().all(faces_away);
+        let [in_front, behind] = self.edges(kind);
         // Smaller ones would be invisible.
         let is_large = self.draft.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
         if is_large && !self.is_fine() && if is_hidden { behind } else { in_front } {
-            lines.drawn.push(self.line([start, end], kinds.edge, if behind { 1.0 } else { 0.0 }));
+            lines.drawn.push(self.line([start, end], kind, if behind { 1.0 } else { 0.0 }));
         }
         let mut is_contour = false;
         borders.contours(sides, &mut |part| {
-            self.contour(part.map(|at| start.lerp(end, at)), Some([a, b]), kinds, lines);
+            self.contour(part.map(|at| start.lerp(end, at)), Some([a, b]), kind, lines);
             is_contour = true;
         });
         let is_dark = self.is_fine() && in_front && self.draft.element > DARK;
@@ -274,15 +266,15 @@ impl Surfaces<'_> {
             && !is_dark
             && (borders.are_bent(sides) || self.draft.shades.as_ref().is_some_and(Shades::jump))
         {
-            lines.borders.push(Border { line: self.line([start, end], kinds.edge, 1.0), edge: Some([a, b]) });
+            lines.borders.push(Border { line: self.line([start, end], kind, 1.0), edge: Some([a, b]) });
         }
     }
 
     /// Whether edges in front of the body, and behind it, are drawn: those of few turned-over elements always. Of many only the outline
     /// is seen through the body.
-    fn edges(&self, kinds: Lines) -> [bool; 2] {
+    fn edges(&self, kind: LineKind) -> [bool; 2] {
         let [in_front, behind] = self.draft.edges();
-        match kinds.edge {
+        match kind {
             LineKind::Edge => [in_front, behind],
             _ if self.draft.marks_outline() => [in_front, false],
             _ => [true; 2],
@@ -290,8 +282,8 @@ impl Surfaces<'_> {
     }
 
     /// A place where the surface turns away from the viewer.
-    fn contour(&self, ends: [DVec3; 2], edge: Option<[u32; 2]>, kinds: Lines, lines: &mut SurfaceLines) {
-        let line = self.line(ends, kinds.contour, 1.0);
+    fn contour(&self, ends: [DVec3; 2], edge: Option<[u32; 2]>, kind: LineKind, lines: &mut SurfaceLines) {
+        let line = self.line(ends, kind.contour(), 1.0);
         lines.drawn.push(line);
         lines.borders.push(Border { line, edge });
     }
@@ -338,7 +330,7 @@ impl Surfaces<'_> {
     /// The number of pieces of each face, among a total number of faces.
     fn cuts(&self, faces: &[Side], total: usize) -> Cuts {
         if self.draft.lens.orthographic || total > VERY_MANY_FACES {
-            return Cuts::none();
+            return Cuts::new(0);
         }
         let of_few = (CELLS_OF_FEW / total.max(1)).isqrt().clamp(FINEST_CUT, FINEST_OF_FEW);
         let affordable = if total > MANY_FACES { 2 } else { of_few };
@@ -449,13 +441,13 @@ impl Surfaces<'_> {
 
     /// Contours within one face. On a bilinear patch they run where its normal is at right angles to the line of sight,
     /// interpolated within each triangle. They end exactly at the contours along the edges.
-    fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut SurfaceLines) {
+    fn inner_contours(&self, patch: &Patch, kind: LineKind, lines: &mut SurfaceLines) {
         let Patch { points, triangles, is_curved, facing, .. } = patch;
         let is_away = |at: usize| facing[at] < 0.0;
         if (1..facing.len()).all(|at| is_away(at) == is_away(0)) {
             return;
         }
-        let mut draw = |ends: [DVec3; 2]| self.contour(ends, None, kinds, lines);
+        let mut draw = |ends: [DVec3; 2]| self.contour(ends, None, kind, lines);
         if *is_curved {
             for triangle in triangles {
                 let crossed = around(triangle).map(|side| ordered(side).map(|at| at as usize));
@@ -540,10 +532,4 @@ fn bilinear_normal([a, b, c, d]: [DVec3; 4], [u, v]: [f64; 2]) -> DVec3 {
     let along_u = (b - a).lerp(c - d, v);
     let along_v = (d - a).lerp(c - b, u);
     along_u.cross(along_v)
-}
-
-/// The mean normal of a polygon, with twice the length of its area (Newell's method).
-pub(super) fn newell(corners: &[DVec3]) -> DVec3 {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()
 }
