@@ -10,36 +10,27 @@ use glam::{DVec2, DVec3};
 /// From this part of the greatest speed on, the arrow has its full length.
 const FAST: f64 = 0.25;
 
-/// The motion of an object at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Going {
-    /// Its velocity (m/s).
-    pub(super) velocity: DVec3,
-    /// Its greatest speed at any time (m/s).
-    pub(super) greatest: f64,
-}
-
 impl Draft<'_> {
-    /// The arrow of an object at a point (m), from that point or, with `arriving`, to it, at a distance (px in the reference
+    /// The arrow of an object at a point (m) with a velocity and a greatest speed at any time (m/s), from that point or, with `arriving`, to it, at a distance (px in the reference
     /// picture). It grows with the square root of the speed, so that it fades gently, and ends where its
     /// `room` ends. A resting object has none.
     pub(super) fn pointer(
         &self,
-        (point, going): (DVec3, Going),
+        (point, velocity, greatest): (DVec3, DVec3, f64),
         arriving: bool,
         gap: f64,
         room: Rectangle,
         marks: &mut Vec<Item>,
     ) {
-        let speed = going.velocity.length();
-        let share = (speed / (FAST * going.greatest)).min(1.0);
+        let speed = velocity.length();
+        let share = (speed / (FAST * greatest)).min(1.0);
         if !(share > 0.0 && speed.is_finite()) {
             return;
         }
         let Some((from, distance)) = self.lens.project(point) else { return };
         let pixels = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
         // A displacement of one pixel, which perspective hardly shortens.
-        let way = going.velocity / speed;
+        let way = velocity / speed;
         let Some((to, _)) = self.lens.project(point + way / pixels) else { return };
         let [from, to] = [from, to].map(DVec2::from);
         let (unit, palette) = (self.scale.line(), &self.composer.palette);

@@ -3,7 +3,6 @@
 use super::half_space::{HalfSpace, clipped_line, clipped_polygon};
 use super::shapes::{FACES, corners, edges};
 use super::space::Staging;
-use crate::picture::compose::pointer::Going;
 use crate::picture::layout::steps::{CLOSE, FREE};
 use crate::picture::narrow::narrow;
 use crate::picture::shadow::Plane;
@@ -86,24 +85,23 @@ impl Staging<'_> {
             let pose = obstacle.pose(self.time());
             let out = pose.rotation * normal;
             let (middle, half) = self.span(at, &pose, normal);
-            let going = self.going(obstacle, middle, half.max_element());
+            let (velocity, greatest) = self.going(obstacle, middle, half.max_element());
             // The arrow is on the side without the body.
-            let arriving = going.velocity.dot(out) > 0.0;
+            let arriving = velocity.dot(out) > 0.0;
             // In the plane a plate is a line.
             let [thickness, gap] = if self.draft.flat { [0.0, CLOSE] } else { [THICKNESS * self.extent(), FREE] };
             let from = middle - thickness * out;
-            self.draft.pointer((from, going), arriving, gap, self.draft.viewport, marks);
+            self.draft.pointer((from, velocity, greatest), arriving, gap, self.draft.viewport, marks);
         }
     }
 
-    /// The motion of an obstacle at one of its points (m), and its greatest speed within about `reach` (m) of its
-    /// pivot.
-    fn going(&self, obstacle: &Obstacle, point: DVec3, reach: f64) -> Going {
+    /// The velocity of an obstacle at one of its points (m), and its greatest speed within about `reach` (m) of its pivot (m/s).
+    fn going(&self, obstacle: &Obstacle, point: DVec3, reach: f64) -> (DVec3, f64) {
         let (pivot, time) = (obstacle.pivot, self.time());
         let own = obstacle.pose(time).undo(pivot, point);
         let half = 0.25 * (1.0 / self.draft.scene.frames_per_second);
         let [before, after] = [time - half, time + half].map(|time| obstacle.pose(time).apply(pivot, own));
-        Going { velocity: (after - before) / (2.0 * half), greatest: obstacle.motion.greatest_speed(reach) }
+        ((after - before) / (2.0 * half), obstacle.motion.greatest_speed(reach))
     }
 
     /// A plate: a thin box that ends at floors.

@@ -1,7 +1,6 @@
 //! Marks on nodes that grips hold or drag.
 
 use crate::picture::compose::draft::Draft;
-use crate::picture::compose::pointer::Going;
 use crate::picture::layout::steps::{CLOSE, FREE, RING, THIN};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{self, Path};
@@ -40,18 +39,19 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
         if grip.motion != Motion::Still {
             let middle = nodes.iter().map(|&node| draft.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
             let gap = PIN[usize::from(draft.flat)] + FREE;
-            draft.pointer((middle, draft.going(grip)), false, gap, draft.between_words(), marks);
+            let (velocity, greatest) = draft.going(grip);
+            draft.pointer((middle, velocity, greatest), false, gap, draft.between_words(), marks);
         }
     }
 }
 
 impl Draft<'_> {
-    /// The motion of the middle of dragged nodes.
-    fn going(&self, grip: &Grip) -> Going {
+    /// The velocity of the middle of dragged nodes, and its greatest speed (m/s).
+    fn going(&self, grip: &Grip) -> (DVec3, f64) {
         let (half, now) = (0.25 / self.scene.frames_per_second, self.snapshot.time);
         let shift = |time: f64| grip.motion.pose(time.clamp(grip.from, grip.until)).shift;
         let [before, after] = [now - half, now + half].map(shift);
-        Going { velocity: (after - before) / (2.0 * half), greatest: grip.motion.greatest_speed(0.0) }
+        ((after - before) / (2.0 * half), grip.motion.greatest_speed(0.0))
     }
 
     /// A diamond on a halo.
