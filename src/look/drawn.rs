@@ -14,7 +14,7 @@ const GREYED: f64 = 0.45;
 
 /// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same
 /// colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LineStyle {
     /// Its colour.
     pub colour: Colour,

@@ -24,38 +24,24 @@ pub struct Name {
     pub colour: Colour,
 }
 
-/// Names of runs in a room beside charts.
-#[derive(Clone, Debug)]
-pub(super) struct EndNames {
-    /// The name of each run.
-    names: Vec<String>,
-    /// Their width right of the chart, with the gap (px).
-    pub width: f64,
+/// The width of the names of series right of a chart, with the gap (px), in a room of a width (px). `None` for a single run, which needs no
+/// name, and if not all names have room: samples of lines beside the names of panels and of rows are a key without them.
+pub(super) fn width(fonts: &Fonts, series: &[Series], unit: f64, room: f64) -> Option<f64> {
+    let size = SMALL * unit;
+    let widest = series.iter().map(|one| fonts.width(&one.name, Weight::Regular, size)).fold(0.0, f64::max);
+    let has_room = widest <= room - BESIDE * unit && Scale::legible(size);
+    let is_named = series.len() > 1 && series.iter().any(|one| !one.points.is_empty());
+    (is_named && has_room).then_some(BESIDE * unit + widest)
 }
 
-impl EndNames {
-    /// The names of runs in a room of a width (px). `None` for a single run, which needs no name, and if not all names have room: samples of
-    /// lines beside the names of panels and of rows are a key without them.
-    pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, width: f64) -> Option<Self> {
-        let size = SMALL * unit;
-        let widest = series.iter().map(|one| fonts.width(&one.name, Weight::Regular, size)).fold(0.0, f64::max);
-        let has_room = widest <= width - BESIDE * unit && Scale::legible(size);
-        if series.iter().all(|one| one.points.is_empty()) || series.len() < 2 || !has_room {
-            return None;
-        }
-        let names = series.iter().map(|one| one.name.to_string()).collect();
-        Some(Self { names, width: BESIDE * unit + widest })
-    }
-
-    /// The names at the ends of time series that have values.
-    pub(super) fn at(&self, series: &[Series]) -> Vec<Name> {
-        let name = |(one, text): (&Series, &String)| {
-            // A loop ends in the midst of a chart: its rightmost point has the name.
-            let end = one.points.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]))?;
-            Some(Name { text: text.clone(), end, colour: one.style.colour })
-        };
-        series.iter().zip(&self.names).filter_map(name).collect()
-    }
+/// The names at the ends of time series that have values.
+pub(super) fn at_ends(series: &[Series]) -> Vec<Name> {
+    let name = |one: &Series| {
+        // A loop ends in the midst of a chart: its rightmost point has the name.
+        let end = one.points.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]))?;
+        Some(Name { text: one.name.clone(), end, colour: one.style.colour })
+    };
+    series.iter().filter_map(name).collect()
 }
 
 /// Writes names right of a chart, the first ones that fit above each other within an extent above and below it (px).

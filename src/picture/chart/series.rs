@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 1e-9;
 const LEAST_RANGE: f64 = 0.02;
 
 /// The series of one run in a chart.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::picture) struct Series {
     pub run: usize,
     /// The name beside its curve.
@@ -108,20 +108,7 @@ impl Series {
 
     /// Points of a run.
     pub(super) fn plain(run: usize, style: LineStyle, points: Vec<[f64; 2]>) -> Self {
-        let (name, times, members) = Default::default();
-        Self {
-            run,
-            name,
-            style,
-            is_count: false,
-            is_part: false,
-            divisor: 1.0,
-            points,
-            times,
-            members,
-            diverged: None,
-            is_end: false,
-        }
+        Self { run, style, points, divisor: 1.0, ..Self::default() }
     }
 
     /// A diagnostic of each body of a run of a scene, if it has several, in the colour of the run.
@@ -299,19 +286,18 @@ pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
         let shown = one.all().filter(|[_, value]| shown(one, *value));
         shown.map(|&[_, value]| value).collect::<Vec<_>>()
     });
-    let ends = values.fold(None, |ends: Option<[f64; 2]>, value| {
-        Some(ends.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
-    });
-    ends.map(widened)
+    extent(values)
 }
 
 /// The range of displacements.
 pub(super) fn ways(series: &[Series]) -> Option<[f64; 2]> {
-    let all = series.iter().flat_map(|one| &one.points).map(|point| point[0]);
-    all.fold(None, |ends: Option<[f64; 2]>, way| {
-        Some(ends.map_or([way; 2], |[low, high]| [low.min(way), high.max(way)]))
-    })
-    .map(widened)
+    extent(series.iter().flat_map(|one| &one.points).map(|point| point[0]))
+}
+
+/// The range of values, widened.
+fn extent(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let ends = values.map(|value| [value; 2]).reduce(|[low, high], [from, to]| [low.min(from), high.max(to)]);
+    ends.map(widened)
 }
 
 /// A range that is not too narrow and includes zero unless that is far away.

@@ -3,7 +3,7 @@
 
 use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
-use super::names::{EndNames, fitting};
+use super::names::{self, at_ends, fitting};
 use super::series::{self, Series};
 use super::{Chart, PlotArea};
 use crate::look::Plot;
@@ -39,8 +39,8 @@ struct Quantity {
     series: Vec<Series>,
     /// The number of runs shown; 0 if each body has its series.
     runs: usize,
-    /// The names at the ends of curves, if there is room for them.
-    ends: Option<EndNames>,
+    /// The width of the names at the ends of curves (px), if there is room for them.
+    ends: Option<f64>,
     /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
     /// Whether the axis to the right is that of a displacement, and its range (m).
@@ -110,7 +110,7 @@ impl Quantity {
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
             range: series::range(&series, counted.is_none()),
             against: (!plot.is_over_time()).then(|| series::ways(&series)),
-            ends: EndNames::new(writer.fonts, &series, writer.scale.type_unit(), room),
+            ends: names::width(writer.fonts, &series, writer.scale.type_unit(), room),
             series,
             runs,
             extent: scene.extent(),
@@ -143,7 +143,7 @@ impl Quantity {
     /// The series that are drawn at a place, with names up to an extent above and below it (px). Curves of bodies without a name would say
     /// nothing; those of runs have the colours and dashes beside the runs' names.
     fn shown(&self, place: PlotArea, beyond: f64) -> &[Series] {
-        let named = self.ends.as_ref().map_or(0, |_| fitting(place.bottom - place.top + 2.0 * beyond, place.unit));
+        let named = self.ends.map_or(0, |_| fitting(place.bottom - place.top + 2.0 * beyond, place.unit));
         &self.series[..if self.runs == 0 { named.min(self.series.len()) } else { self.series.len() }]
     }
 
@@ -285,7 +285,7 @@ impl Stack {
 
     /// The width of the names right of the charts (px).
     pub(in crate::picture) fn ends_width(&self) -> f64 {
-        self.quantities.iter().filter_map(|one| one.ends.as_ref()).map(|ends| ends.width).fold(0.0, f64::max)
+        self.quantities.iter().filter_map(|one| one.ends).fold(0.0, f64::max)
     }
 
     /// The most names at the ends of the curves of a chart.
@@ -337,9 +337,8 @@ impl Stack {
         }
         for (at, (one, (chart, place))) in self.quantities.iter().zip(&mut placed).enumerate() {
             let shown = one.shown(*place, room.beyond);
-            if let Some(names) = one.ends.as_ref().map(|ends| ends.at(shown)) {
-                chart.annotations.push(Annotation::Names { names, beyond: [room.beyond; 2] });
-            }
+            let names = one.ends.map(|_| Annotation::Names { names: at_ends(shown), beyond: [room.beyond; 2] });
+            chart.annotations.extend(names);
             chart.ground(ground, *place, at + 1 >= over_time);
             chart.curves(curves, *place);
             let Some(left) = room.names else { continue };

@@ -15,7 +15,7 @@ use crate::picture::page::Item;
 use crate::runner::history::History;
 use crate::runner::{Frame, RunFrame};
 use crate::scene::Scene;
-use crate::sim::{Diagnostic, Status};
+use crate::sim::Status;
 
 /// The largest shares of the room for names of charts and for the names at the ends of curves.
 const NAME: f64 = 0.3;
@@ -24,44 +24,22 @@ const NAMES: f64 = 0.22;
 /// The charts of a scene.
 #[derive(Debug)]
 pub(in crate::picture) struct Timeline {
-    /// What moves in each of the charts.
-    moving: Vec<Moving>,
     events: Vec<Event>,
-    /// The charts that have room, at their places.
-    charts: Vec<(Chart, PlotArea)>,
+    /// The charts that have room: what each shows, with the series of runs, whose present values move, and its place.
+    charts: Vec<(Plot, Vec<Series>, Chart, PlotArea)>,
     /// The parts that do not move: those below the curves, and the curves.
     still: [Vec<Item>; 2],
 }
 
-/// A point of a chart, with the time when it is there (s).
-type Timed = (f64, [f64; 2]);
-
-/// The present values in a chart.
-#[derive(Debug)]
-struct Moving {
-    diagnostic: Option<Diagnostic>,
-    is_over_time: bool,
-    /// For each run shown its colour, the number by which its diagnostic is divided and, of what is measured of one thing, points.
-    runs: Vec<(usize, Colour, f64, Vec<Timed>)>,
-}
-
-impl Moving {
-    fn new(plot: &Plot, series: &[Series]) -> Self {
-        let points = |one: &Series| one.times.iter().copied().zip(one.points.iter().copied()).collect();
-        let runs = series.iter().map(|one| (one.run, one.style.colour, one.divisor, points(one))).collect();
-        Self { diagnostic: plot.diagnostic(), is_over_time: plot.is_over_time(), runs }
-    }
-
-    /// The present value of a run, and its colour.
-    fn now(&self, run: &RunFrame) -> Option<([f64; 2], Colour)> {
-        let (_, colour, divisor, points) = self.runs.iter().find(|(of, ..)| *of == run.run)?;
-        let time = run.snapshot.time;
-        let at = match self.diagnostic {
-            Some(diagnostic) => [time, diagnostic.of(&run.snapshot.diagnostics) / divisor],
-            None => points[points.partition_point(|(there, _)| *there <= time).checked_sub(1)?].1,
-        };
-        Some((at, *colour))
-    }
+/// The present value of a run in a chart with series of runs, and its colour.
+fn now(plot: &Plot, series: &[Series], run: &RunFrame) -> Option<([f64; 2], Colour)> {
+    let own = series.iter().find(|one| one.run == run.run)?;
+    let time = run.snapshot.time;
+    let at = match plot.diagnostic() {
+        Some(diagnostic) => [time, diagnostic.of(&run.snapshot.diagnostics) / own.divisor],
+        None => own.points[own.times.partition_point(|there| *there <= time).checked_sub(1)?],
+    };
+    Some((at, own.style.colour))
 }
 
 impl Timeline {
@@ -79,7 +57,6 @@ impl Timeline {
         let side = layout.scale.margin();
         let width = f64::from(scene.view.size[0]) - 2.0 * side;
         let stack = Stack::new(plots, &[(scene, history)], &ground, NAMES * width, str::to_owned);
-        let moving = stack.runs().map(|(at, series)| Moving::new(&plots[at], series)).collect();
         let (place, first) = stack.first();
         let mut events = event::events(&plots[place], first, scene.extent(), history.end);
         // A number without an explanation in its panel would mean nothing.
@@ -108,20 +85,22 @@ impl Timeline {
             stack.draw([&mut ground, &mut curves], &room, time, &flags)
         });
         let still = [ground, curves].map(|writer| writer.items().collect());
-        Self { moving, events, charts: charts.unwrap_or_default(), still }
+        let shown = stack.runs().zip(charts.unwrap_or_default());
+        let shown = shown.map(|((at, series), (chart, place))| (plots[at].clone(), series.to_vec(), chart, place));
+        Self { charts: shown.collect(), events, still }
     }
 
     /// Draws the charts with the present moment: a line behind the curves, and circles around the values, which hide
     /// nothing.
     pub(in crate::picture) fn draw(&self, writer: &mut Writer<'_>, frame: &Frame) {
         writer.marks.extend_from_slice(&self.still[0]);
-        for (_, (chart, place)) in self.moving.iter().zip(&self.charts).filter(|(one, _)| one.is_over_time) {
+        for (.., chart, place) in self.charts.iter().filter(|(plot, ..)| plot.is_over_time()) {
             Annotation::Moment { at: frame.time, colour: writer.palette.text }.draw(writer, chart, *place);
         }
         writer.curves.extend_from_slice(&self.still[1]);
-        for (moving, (chart, place)) in self.moving.iter().zip(&self.charts) {
+        for (plot, series, chart, place) in &self.charts {
             for run in frame.runs.iter().filter(|run| run.snapshot.status == Status::Ok) {
-                let ring = moving.now(run).map(|(at, colour)| Annotation::Ring { at, colour });
+                let ring = now(plot, series, run).map(|(at, colour)| Annotation::Ring { at, colour });
                 ring.iter().for_each(|ring| ring.draw(writer, chart, *place));
             }
         }
