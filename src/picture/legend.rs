@@ -3,7 +3,7 @@
 use super::Item;
 use super::arrows;
 use super::caption::Writer;
-use super::chart::axis::{Kind, Stretch};
+use super::chart::axis::Stretch;
 use super::chart::{Axis, Chart, PlotArea};
 use super::compose::overlay::explained;
 use super::ghost;
@@ -26,8 +26,8 @@ const BODY: f64 = 0.5;
 const ARC: [f64; 2] = [0.4, 0.75];
 const PIECES: u32 = 24;
 const HEAD: usize = 8;
-/// The most ticks.
-const MOST_TICKS: usize = 5;
+/// The most ticks of a bar.
+pub(super) const MOST_TICKS: usize = 5;
 
 /// A colour scale.
 pub(super) struct Bar<'a> {
@@ -38,23 +38,6 @@ pub(super) struct Bar<'a> {
     pub(super) ramp: &'a [Colour],
     /// Whether there are values below and above it.
     pub(super) beyond: [bool; 2],
-}
-
-impl<'a> Bar<'a> {
-    /// The scale of a quantity with a name, a unit and a definition, for a body of a size (m), over a range. `values`
-    /// may lie beyond the range.
-    pub(super) fn new(
-        name: String,
-        (unit, definition): (&str, &'static str),
-        range: [f64; 2],
-        extent: f64,
-        ramp: &'a [Colour],
-        values: impl Iterator<Item = f64>,
-    ) -> Self {
-        let [low, high] = range;
-        let beyond = values.fold([false; 2], |[below, above], value| [below || value < low, above || value > high]);
-        Self { name, definition, axis: Stretch::new(Kind::Fixed, range, unit, extent, MOST_TICKS), ramp, beyond }
-    }
 }
 
 /// A line or a mark with its meaning.

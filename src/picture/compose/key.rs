@@ -3,8 +3,9 @@
 use super::Composer;
 use super::overlay::{self, KeyPlace};
 use crate::look::{BODIES, ColourScale};
+use crate::picture::chart::axis::{Kind, Stretch};
 use crate::picture::compose::wire::spring_strain;
-use crate::picture::legend::{Bar, Sample, SampleKind};
+use crate::picture::legend::{Bar, MOST_TICKS, Sample, SampleKind};
 use crate::runner::{Frame, RunFrame};
 
 impl Composer<'_> {
@@ -46,7 +47,10 @@ impl Composer<'_> {
         // The other run itself is plain.
         let is_shown = colour.to.is_some_and(|to| frame.runs.iter().any(|run| run.run == to));
         let definition = if is_shown { "between equal nodes; that run is plain" } else { definition };
-        Some(Bar::new(name, (field.unit(), definition), colour.range, self.extent, &self.ramp, values))
+        let [low, high] = colour.range;
+        let beyond = values.fold([false; 2], |[below, above], value| [below || value < low, above || value > high]);
+        let axis = Stretch::new(Kind::Fixed, colour.range, field.unit(), self.extent, MOST_TICKS);
+        Some(Bar { name, definition, axis, ramp: &self.ramp, beyond })
     }
 
     /// The strains of a run's springs on a scale.
