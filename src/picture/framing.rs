@@ -48,7 +48,7 @@ pub(super) struct Seen {
     /// Whether the camera follows the centre of mass.
     follows: bool,
     /// The azimuth of the camera (rad).
-    azimuth: f64,
+    pub(super) azimuth: f64,
     /// The camera's axes: to the right, up and towards it.
     axes: [DVec3; 3],
     bodies: [DVec3; 2],
@@ -129,11 +129,6 @@ impl Seen {
         }
         all.all = union(all.all, all.bodies);
         (!moments.is_empty()).then_some(all)
-    }
-
-    /// The azimuth of the camera (rad).
-    pub(super) fn azimuth(&self) -> f64 {
-        self.azimuth
     }
 
     /// The larger of the width and the height that bodies need (m).

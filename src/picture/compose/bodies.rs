@@ -20,7 +20,7 @@ const SOFT_SHARE: f64 = 4.5;
 /// The bodies of a run.
 #[derive(Debug)]
 pub(super) struct Bodies<'a> {
-    assembly: &'a Assembly,
+    pub(super) assembly: &'a Assembly,
     /// Length of an edge of the smallest elements (m).
     pub(super) side: f64,
     /// The unit of soft distances in light (sides of the panel).
@@ -89,10 +89,6 @@ impl<'a> Bodies<'a> {
             ears,
             bare,
         }
-    }
-
-    pub(super) fn assembly(&self) -> &'a Assembly {
-        self.assembly
     }
 
     /// All bodies as one.

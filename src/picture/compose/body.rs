@@ -102,11 +102,6 @@ impl Draft<'_> {
         self.body.elements().len() > MANY_TO_MARK
     }
 
-    /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
-    pub(super) fn edges(&self) -> [bool; 2] {
-        self.scene.view.edges.are_drawn()
-    }
-
     /// Whether a carried surface is seen in place of a face. Faces that a broken element uncovers are seen themselves.
     pub(super) fn is_covered(&self, side: &Side) -> bool {
         let (face, faces, broken) = (side.face as usize, self.body.faces(), &self.snapshot.broken);

@@ -272,7 +272,7 @@ impl Surfaces<'_> {
         let place = |at: &DVec3| narrow_point((at - origin) * per_side);
         let (eye, mut places) = (place(&self.draft.lens.eye), Vec::new());
         points.par_iter().with_min_len(OF_THREAD).map(place).collect_into_vec(&mut places);
-        let gone = fine.gone(self.draft.bodies.assembly(), broken);
+        let gone = fine.gone(self.draft.bodies.assembly, broken);
         let faces = fine.seen(&places, &gone, eye);
         let vertex = |corner: usize| {
             let at = places[fine.points[corner] as usize];
@@ -295,7 +295,7 @@ impl Surfaces<'_> {
         let mut turned: Vec<_> = if over.is_empty() { Vec::new() } else { fine.movers.iter().map(turned).collect() };
         let mut rim = Rim::default();
         if !over.is_empty() {
-            rim = Rim::new(fine, &self.draft.bodies.assembly().bodies()[fine.body], over, &mut turned);
+            rim = Rim::new(fine, &self.draft.bodies.assembly.bodies()[fine.body], over, &mut turned);
             rim.add_corners(&mut sound.vertices, &mut sound.shades, base);
         }
         // From outside nobody sees the inside of a closed surface of which no part has turned over or is gone.

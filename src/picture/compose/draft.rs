@@ -98,7 +98,7 @@ impl<'a> Draft<'a> {
         let of_nodes = match &shades {
             _ if view.visible.surfaces && bodies.bare.is_empty() => Vec::new(),
             Some(shades) => shades.of_nodes(body),
-            None => places_of_bodies(bodies.assembly()),
+            None => places_of_bodies(bodies.assembly),
         };
         let flat = body.dimension() == Dimension::Plane;
         let clear = layout::clear_of_words(viewport, view, scale);

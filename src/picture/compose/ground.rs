@@ -153,7 +153,7 @@ impl Draft<'_> {
         let mut carried = self.carried();
         for fine in skin.fine.iter().filter(|_| !self.skin.is_empty()) {
             let (own, others) = carried.split_at(fine.surface.rest.len());
-            let gone = fine.gone(self.bodies.assembly(), broken);
+            let gone = fine.gone(self.bodies.assembly, broken);
             if gone.is_empty() {
                 casters.add_shape(fine.shape.points.iter().map(|&at| relative(&own[at as usize])), &fine.shape);
             } else {

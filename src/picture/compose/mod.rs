@@ -139,7 +139,7 @@ impl<'a> Composer<'a> {
 
     /// The azimuth of the camera (rad); `None` in the plane.
     pub(crate) fn azimuth(&self) -> Option<f64> {
-        let azimuth = self.seen.as_ref().map_or(self.scene.view.camera.azimuth, Seen::azimuth);
+        let azimuth = self.seen.as_ref().map_or(self.scene.view.camera.azimuth, |seen| seen.azimuth);
         (self.scene.dimension() == Dimension::Space).then_some(azimuth)
     }
 
@@ -177,10 +177,10 @@ impl<'a> Composer<'a> {
         let size = view.size.map(|length| length.max(1));
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let others;
-        let arranged = match self.arranged.get_or_init(|| self.arrange(&runs)) {
+        let arranged = match self.arranged.get_or_init(|| self.arrange(&runs, self.columns(&runs))) {
             known if known.runs == runs => known,
             _ => {
-                others = self.arrange(&runs);
+                others = self.arrange(&runs, self.columns(&runs));
                 &others
             }
         };
@@ -225,9 +225,8 @@ impl<'a> Composer<'a> {
         Picture { size, palette: self.palette, fonts, ramp, panels, under, above: marks }
     }
 
-    /// Arranges the panels of some runs.
-    fn arrange(&self, runs: &[usize]) -> Arranged {
-        let columns = self.columns(runs);
+    /// Arranges the panels of some runs in columns.
+    fn arrange(&self, runs: &[usize], columns: usize) -> Arranged {
         let around = self.around(runs, columns);
         let (layout, scale) = (&around.layout, around.layout.scale);
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
@@ -237,13 +236,12 @@ impl<'a> Composer<'a> {
 
     /// Writes the words of all panels.
     fn write(&self, frame: &Frame, arranged: &Arranged, framing: Option<&Framing>, writer: &mut Writer<'_>) {
-        let &Arranged { columns, ref around, ref numbers, .. } = arranged;
+        let &Arranged { ref runs, columns, ref around, ref numbers, .. } = arranged;
         let (layout, with_clock) = (&around.layout, around.clock_above.is_none());
-        let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
-        let (names, seconds) = (self.names(&runs), self.seconds(&runs, layout));
+        let (names, seconds) = (self.names(runs), self.seconds(runs, layout));
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let &WordsShown { labels, events, .. } = &layout.written;
-            let heading = self.heading(at, &runs, &names, &seconds, layout);
+            let heading = self.heading(at, runs, &names, &seconds, layout);
             let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
             let taken = if has_clock { writer.clock_room(viewport, self.clock_label(layout))[0] } else { 0.0 };
             writer.heading(viewport, &heading, taken);

@@ -60,14 +60,6 @@ impl Composer<'_> {
         tree::column(&[Node::new(NumberPart::Row, 1.0).with(row)], [0.0, 0.0, width, 1.0])
     }
 
-    /// Whether the scale bar of some runs in columns has no room.
-    pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
-        let layout = self.around(runs, columns).layout;
-        let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
-        let has_bar = || self.numbers(runs, &layout, shot.as_ref()).get(NumberPart::Bar).is_some();
-        self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !has_bar()
-    }
-
     /// Scale bars with their lengths (px), from the longest to the shortest.
     pub(super) fn bars(
         &self,

@@ -273,7 +273,7 @@ impl Surfaces<'_> {
     /// Whether edges in front of the body, and behind it, are drawn: those of few turned-over elements always. Of many only the outline
     /// is seen through the body.
     fn edges(&self, kind: LineKind) -> [bool; 2] {
-        let [in_front, behind] = self.draft.edges();
+        let [in_front, behind] = self.draft.scene.view.edges.are_drawn();
         match kind {
             LineKind::Edge => [in_front, behind],
             _ if self.draft.marks_outline() => [in_front, false],
@@ -375,7 +375,7 @@ impl Surfaces<'_> {
         corners.clear();
         corners.extend(nodes.iter().map(|&node| self.at(node)));
         phases.clear();
-        let body = self.draft.bodies.assembly().body_of_node(nodes[0] as usize);
+        let body = self.draft.bodies.assembly.body_of_node(nodes[0] as usize);
         let Hatch { period, middle } = self.hatches[body];
         let phase = |node: u32| match middle {
             Some(middle) => (self.at(node) - middle).dot(DVec3::X - DVec3::Y) * FRAC_1_SQRT_2 / period,

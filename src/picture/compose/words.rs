@@ -1,7 +1,8 @@
 //! The words of a scene's pictures: their places, which are the same in all frames, and words without room.
 
-use super::Composer;
+use super::numbers::NumberPart;
 use super::overlay::have_colours_of_runs;
+use super::{Arranged, Composer};
 use crate::look::{Labels, LineStyle, Plot};
 use crate::picture::caption::{self, Heading};
 use crate::picture::chart::{event, style};
@@ -223,7 +224,12 @@ impl Composer<'_> {
                 }
             }
         }
-        let lacks_bar: Vec<_> = columns.map(|columns| self.lacks_bar(runs, columns)).collect();
+        let lacks_bar = |columns: usize| {
+            let Arranged { around, numbers, .. } = self.arrange(runs, columns);
+            let has_panels = !around.layout.panels.is_empty();
+            self.scene.view.labels.scale_bar && has_panels && numbers.get(NumberPart::Bar).is_none()
+        };
+        let lacks_bar: Vec<_> = columns.map(lacks_bar).collect();
         if lacks_bar.contains(&true) {
             let may = if lacks_bar.contains(&false) { "may be" } else { "is" };
             told.push(format!("the scale bar {may} left out"));

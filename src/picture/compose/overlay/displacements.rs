@@ -27,7 +27,7 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
     }
     let node = if view.visible.nodes { node_radius(draft.scale, draft.element) } else { 0.0 };
     let arrows = draft.facing_bearers().into_iter().filter_map(|(bearer, opacity)| {
-        let placement = draft.snapshot.placements[draft.bodies.assembly().body_of_node(bearer as usize)];
+        let placement = draft.snapshot.placements[draft.bodies.assembly.body_of_node(bearer as usize)];
         let start = placement.place(draft.body.rest()[bearer as usize]);
         let end = start + view.arrow_scale * (draft.position[bearer as usize] - start);
         draft.arrow([start, end], 2.0 * node, opacity, arrows::with_halo)

@@ -140,7 +140,7 @@ impl Draft<'_> {
 
     /// The nodes of the body of a load.
     fn own_nodes(&self, load: &Loading) -> Range<usize> {
-        let bodies = self.bodies.assembly();
+        let bodies = self.bodies.assembly;
         let first = load.nodes().and_then(|nodes| nodes.first()).map_or(0, |&node| node as usize);
         bodies.nodes(bodies.body_of_node(first))
     }

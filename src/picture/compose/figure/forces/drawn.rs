@@ -190,7 +190,7 @@ impl CellView<'_> {
         let visible = (0..nodes.len()).filter(|&node| seen[node] > 0.5);
         let Some(node) = visible.max_by(|&one, &other| displaced(one).total_cmp(&displaced(other))) else { return };
         let (now, equilibrium) = (nodes[node], ghost[node]);
-        let body = self.draft.bodies.assembly().body_of_node(node);
+        let body = self.draft.bodies.assembly.body_of_node(node);
         let centre = self.pixel(self.cell.frame.snapshot.placements[body].centre);
         for (to, dash) in [(now, &[][..]), (equilibrium, &DASH.map(|length| length * line))] {
             let points = [centre, to].map(|at| at.to_array());

@@ -42,7 +42,7 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
     }
     for kind in kinds {
         let first = scene(kind[0].0);
-        let [width, height] = layout.tile_size();
+        let [width, height] = layout.tile_size;
         let lens = framing::from_a_metre(first, [0, 0, width, height], layout.tile_scale);
         let mut of_columns: Vec<_> = kind.iter().map(|(_, seen)| *seen).collect();
         if geometry::ground(&first.obstacles, 0.0).is_some() {

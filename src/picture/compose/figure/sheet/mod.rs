@@ -152,7 +152,7 @@ impl Plan {
         let plan = |wanted: Wanted, pitch: f64| SheetLayout::new(sheet, (size, scale), wanted, &labels, beside, pitch);
         // The width of tiles does not depend on what is above them.
         let layout = plan(wanted, f64::INFINITY);
-        let pitch = f64::from(layout.tile_size()[0]);
+        let pitch = f64::from(layout.tile_size[0]);
         let shown: Vec<_> = cells(moments).map(|([_, at], run)| [sheet.columns[at].scene, run.run]).collect();
         below::unify(composers, &shown, scale, &layout);
         let headings = Headings::new(sheet, writer, pitch);

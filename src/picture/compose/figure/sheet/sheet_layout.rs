@@ -24,7 +24,7 @@ pub(super) struct SheetLayout {
     /// The left side of the first column, and the top of the first row.
     origin: [u32; 2],
     /// The sizes of a tile.
-    tile: [u32; 2],
+    pub(super) tile_size: [u32; 2],
     pub(super) tile_scale: Scale,
     /// The height at the lower side of a tile that its body leaves free.
     pub(super) below_body: f64,
@@ -65,7 +65,7 @@ impl SheetLayout {
         Self {
             size,
             origin: [left, top].map(|at| at.round() as u32),
-            tile: tile.map(|length| length as u32),
+            tile_size: tile.map(|length| length as u32),
             tile_scale: scale.with_unit(tile_unit.clamp(TILE_LIMITS[0] * unit, TILE_LIMITS[1] * unit)),
             below_body: (high - body).max(CLOSE * unit).min(0.5 * tile[1]),
             page,
@@ -75,15 +75,15 @@ impl SheetLayout {
     /// The place of a tile. More tiles than pixels lie over each other at the border of the picture.
     pub(super) fn tile(&self, row: usize, column: usize) -> Rectangle {
         let place = |axis: usize, at: usize| {
-            let start = self.origin[axis] + self.tile[axis] * at as u32;
-            start.min(self.size[axis].saturating_sub(self.tile[axis]))
+            let start = self.origin[axis] + self.tile_size[axis] * at as u32;
+            start.min(self.size[axis].saturating_sub(self.tile_size[axis]))
         };
-        [place(0, column), place(1, row), self.tile[0], self.tile[1]]
+        [place(0, column), place(1, row), self.tile_size[0], self.tile_size[1]]
     }
 
     /// The part of a tile at the picture's origin that its body may touch: left, top, right and bottom (px).
     pub(super) fn body_room(&self) -> [f64; 4] {
-        let [width, height] = self.tile.map(f64::from);
+        let [width, height] = self.tile_size.map(f64::from);
         let beside = (0.085 * width).max(2.0).min(0.25 * width);
         let above = (0.045 * height).max(2.0).min(0.25 * height);
         [beside, above, width - beside, (height - self.below_body).max(0.5 * height)]
@@ -91,12 +91,7 @@ impl SheetLayout {
 
     /// The width of the room for words in a tile (px).
     pub(super) fn words_width(&self, scale: Scale) -> f64 {
-        f64::from(self.tile[0]) - BESIDE * scale.unit
-    }
-
-    /// The sizes of a tile (px).
-    pub(super) fn tile_size(&self) -> [u32; 2] {
-        self.tile
+        f64::from(self.tile_size[0]) - BESIDE * scale.unit
     }
 }
 
