@@ -7,6 +7,7 @@ use super::source::{Pictures, Source, pictures_in};
 use super::states::{Moved, State, States, moved};
 use super::verdict::{Compared, Verdict};
 use crate::output::{Shown, Tags};
+use crate::reading::beside::name_of;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +19,7 @@ use std::path::Path;
 const MOST_LISTED: usize = 12;
 
 /// The result of comparing the pictures and states of two sides.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Comparison {
     /// One for each picture on either side, in the order of their names.
     pub(crate) pictures: Vec<Compared>,
@@ -59,23 +60,27 @@ impl Comparison {
         let are_folders = [is_folder(expected)?, is_folder(actual)?];
         let pairs: Vec<(String, [Option<Source>; 2])> = match are_folders {
             [false, false] => {
-                let name = actual.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                vec![(name, sides.map(|path| Some(Source::File(path.into()))))]
+                vec![(name_of(actual), sides.map(|path| Some(Source::File(path.into()))))]
             }
             [true, true] => {
                 if let Some(path) = sides.into_iter().find(|path| path.join(RECORD_FILE).exists()) {
-                    return Err(ComparisonError::Golden { path: path.into() });
+                    let path = path.display();
+                    return Err(ComparisonError::Wrong(format!(
+                        "{path} is a golden, which is compared with its scene: localshape compare {path} SCENE"
+                    )));
                 }
                 paired(pictures_in(expected)?, pictures_in(actual)?)
             }
             [is_folder, _] => {
-                let [folder, file] = if is_folder { sides } else { [actual, expected] }.map(Path::to_owned);
-                return Err(ComparisonError::Unlike { folder, file });
+                let [folder, file] = if is_folder { sides } else { [actual, expected] }.map(Path::display);
+                return Err(ComparisonError::Wrong(format!(
+                    "{folder} is a folder and {file} is a file; expected two pictures or two folders of pictures"
+                )));
             }
         };
         if pairs.is_empty() {
-            let [expected, actual] = sides.map(Path::to_owned);
-            return Err(ComparisonError::Empty { expected, actual });
+            let [expected, actual] = sides.map(Path::display);
+            return Err(ComparisonError::Wrong(format!("neither {expected} nor {actual} has a PNG picture")));
         }
         let mut comparison = Self::of_pairs(pairs, actual);
         let tags = [0, 1].map(|side| -> Vec<&Tags> {
@@ -100,9 +105,7 @@ impl Comparison {
         };
         let sources = pairs.into_iter().map(|(_, sources)| sources).collect();
         let title = actual.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let (moved, keys, notes) = Default::default();
-        let (ends_early, golden_is_missing, states, command) = (None, false, None, None);
-        Self { pictures, moved, keys, ends_early, golden_is_missing, notes, states, sources, title, command }
+        Self { pictures, sources, title, ..Self::default() }
     }
 
     /// Whether everything is as expected.

@@ -4,10 +4,12 @@ use super::drawing::{Drawing, add, size};
 use super::folder::{Drawn, Golden};
 use super::record::Record;
 use super::said;
+use super::source::Source;
 use super::states::States;
 use crate::gpu::{Gpu, adapter_name};
 use crate::output::{Compression, Tags, encode};
 use crate::picture::{Composer, compose_figure};
+use crate::reading::beside::name_of;
 use crate::render::{RenderError, Renderer};
 use crate::runner::growing::Growing;
 use crate::runner::history::History;
@@ -16,8 +18,7 @@ use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
 use crate::sim::Scope;
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Steps of each run between checks for interruption.
 const SLICE: u64 = 100;
@@ -79,7 +80,7 @@ pub(crate) fn draw(
     };
     Ok(drawn.map(|mut drawn| {
         drawn.origin = path.to_owned();
-        drawn.record.subject = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        drawn.record.subject = name_of(path);
         drawn
     }))
 }
@@ -138,17 +139,17 @@ fn draw_figure(
     for (name, of, snapshot) in moments.runs_and_states(&figure) {
         add(&mut states, &name, of, 0, snapshot, true);
     }
-    let mut files = BTreeMap::new();
-    let is_drawn = gpu.is_some() || !figure.is_lit();
-    if is_drawn {
+    let mut pictures = None;
+    if gpu.is_some() || !figure.is_lit() {
         let [width, height] = figure.size;
         let no_room = |error| DrawError::NoRoom(format!("{}: at {width}×{height} {error}", figure.name));
         let (picture, _) = compose_figure(&figure, &moments).map_err(no_room)?;
         let image = Renderer::new(gpu, figure.size)?.draw(&picture)?;
         let texts = Tags::of_figure(&figure, &moments, &adapter_name(gpu.filter(|_| figure.is_lit()))).texts();
-        files.insert(format!("{}.png", figure.name), encode(figure.size, image.as_raw(), &texts, Compression::Small));
+        let file = encode(figure.size, image.as_raw(), &texts, Compression::Small);
+        pictures = Some([(format!("{}.png", figure.name), Source::Memory(file))].into());
     }
     let keys = said::of_figure(path, &figure);
     let record = Record { subject: String::new(), size: figure.size, frames: [0].into(), keys, states };
-    Ok(Some(Drawn::new(record, files, is_drawn, Vec::new())))
+    Ok(Some(Drawn { origin: PathBuf::new(), record, pictures, notes: Vec::new() }))
 }

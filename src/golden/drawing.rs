@@ -3,6 +3,7 @@
 use super::folder::{Drawn, Golden};
 use super::keys::Key;
 use super::record::{DIGITS, Record};
+use super::source::{Pictures, Source};
 use super::states::{State, States};
 use crate::gpu::{Gpu, adapter_name};
 use crate::output::{Compression, Tags, encode, frame_file_name, recorded, state_digest};
@@ -12,6 +13,7 @@ use crate::runner::Frame;
 use crate::scene::Scene;
 use crate::sim::{Divergence, Snapshot, Status};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 /// Spaces between the frames whose positions are recorded.
 const SPACES: u64 = 10;
@@ -33,7 +35,7 @@ pub(super) struct Drawing<'s> {
     renderer: Option<Renderer>,
     adapter: String,
     states: States,
-    files: BTreeMap<String, Vec<u8>>,
+    files: Pictures,
     /// Why runs ended early.
     stopped: BTreeMap<usize, String>,
 }
@@ -90,7 +92,7 @@ impl<'s> Drawing<'s> {
             let pixels = renderer.draw(&compose())?.into_raw();
             let texts = Tags::of_frame(scene, frame, &self.adapter).texts();
             let file = encode(scene.view.size, &pixels, &texts, Compression::Small);
-            self.files.insert(frame_file_name(index), file);
+            self.files.insert(frame_file_name(index), Source::Memory(file));
         }
         Ok(())
     }
@@ -100,7 +102,8 @@ impl<'s> Drawing<'s> {
         let is_drawn = self.is_drawn();
         let Self { scene, drawn, states, files, stopped, .. } = self;
         let record = Record { subject: String::new(), size: scene.view.size, frames: drawn, keys, states };
-        Drawn::new(record, files, is_drawn, stopped.into_values().collect())
+        let (pictures, notes) = (is_drawn.then_some(files), stopped.into_values().collect());
+        Drawn { origin: PathBuf::new(), record, pictures, notes }
     }
 }
 

@@ -10,13 +10,7 @@ pub(crate) enum ComparisonError {
     Absent { path: PathBuf },
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: io::Error },
-    #[error("{} is a folder and {} is a file; expected two pictures or two folders of pictures", folder.display(), file.display())]
-    Unlike { folder: PathBuf, file: PathBuf },
-    #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
-    Empty { expected: PathBuf, actual: PathBuf },
-    #[error("{} is a golden, which is compared with its scene: localshape compare {} SCENE", path.display(), path.display())]
-    Golden { path: PathBuf },
-    #[cfg(feature = "render")]
-    #[error("{} {what}", path.display())]
-    NoGolden { path: PathBuf, what: String },
+    /// The sides cannot be compared with each other.
+    #[error("{0}")]
+    Wrong(String),
 }

@@ -2,9 +2,9 @@
 
 use super::error::ComparisonError;
 use super::record::{RECORD_FILE, Record};
-use super::source::{Pictures, Source, pictures_in};
+use super::source::{Pictures, pictures_in};
 use crate::output::{Tags, read_tags};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The largest accepted record (bytes).
@@ -31,9 +31,9 @@ impl Golden {
         if folder.symlink_metadata().is_err() {
             return Ok(golden);
         }
-        let told = |what: String| Err(ComparisonError::NoGolden { path: folder.into(), what });
+        let told = |path: &Path, what: &str| Err(ComparisonError::Wrong(format!("{} {what}", path.display())));
         if !folder.is_dir() {
-            return told("is not a golden; expected a folder with golden.toml, or the name of a new one".to_owned());
+            return told(folder, "is not a golden; expected a folder with golden.toml, or the name of a new one");
         }
         golden.pictures = pictures_in(folder)?;
         match record_of(folder) {
@@ -42,13 +42,14 @@ impl Golden {
             Err(what) => {
                 let what =
                     format!("cannot be read: {what}; renew the golden with --bless, or UPDATE_GOLDENS=1 cargo test");
-                return Err(ComparisonError::NoGolden { path: folder.join(RECORD_FILE), what });
+                return told(&folder.join(RECORD_FILE), &what);
             }
         }
         if let (None, None, Some(other)) = (&golden.record, &golden.damage, other_file(folder)) {
-            return told(format!(
+            let what = format!(
                 "is not a golden: it has no {RECORD_FILE}, but other files, such as {other}; name a folder that does not exist"
-            ));
+            );
+            return told(folder, &what);
         }
         Ok(golden)
     }
@@ -86,21 +87,13 @@ fn other_file(folder: &Path) -> Option<String> {
 /// A simulated scene or figure, drawn if there is a graphics adapter.
 #[derive(Clone, Debug)]
 pub(crate) struct Drawn {
-    /// Its file.
+    /// Its file, which the caller sets.
     pub(super) origin: PathBuf,
     pub(super) record: Record,
     /// `None` without a graphics adapter.
     pub(super) pictures: Option<Pictures>,
     /// Runs that diverged.
     pub(super) notes: Vec<String>,
-}
-
-impl Drawn {
-    /// A scene or figure, with its PNG files by name if it was drawn. The caller sets the file.
-    pub(super) fn new(record: Record, files: BTreeMap<String, Vec<u8>>, is_drawn: bool, notes: Vec<String>) -> Self {
-        let pictures = files.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
-        Self { origin: PathBuf::new(), record, pictures: is_drawn.then_some(pictures), notes }
-    }
 }
 
 /// Reads the record of a golden's folder; `None` if there is none.

@@ -5,13 +5,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A key of a scene file and its value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Key {
-    /// Its path, such as `run[0].model.stiffness`.
-    pub(super) path: String,
-    pub(super) value: String,
-}
+/// A key of a scene file, by its path, such as `run[0].model.stiffness`, and its value.
+pub(super) type Key = (String, String);
 
 /// A key whose value changed; `None` where the scene does not have it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -20,20 +15,6 @@ pub(crate) struct ChangedKey {
     pub(crate) key: String,
     pub(crate) before: Option<String>,
     pub(crate) after: Option<String>,
-}
-
-impl Key {
-    /// Reads a line of a record.
-    pub(super) fn parse(line: &str) -> Self {
-        let (path, value) = line.split_once(" = ").unwrap_or((line, ""));
-        Self { path: path.to_owned(), value: value.to_owned() }
-    }
-}
-
-impl fmt::Display for Key {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} = {}", self.path, self.value)
-    }
 }
 
 impl fmt::Display for ChangedKey {
@@ -46,11 +27,10 @@ impl fmt::Display for ChangedKey {
 /// The keys that changed.
 #[cfg(feature = "render")]
 pub(super) fn changed(before: &[Key], after: &[Key]) -> Vec<ChangedKey> {
-    let [old, new] = [before, after]
-        .map(|keys| keys.iter().map(|key| (key.path.as_str(), key.value.clone())).collect::<BTreeMap<_, _>>());
-    let gone = before.iter().filter(|key| !new.contains_key(key.path.as_str()));
-    let all = after.iter().chain(gone).map(|key| key.path.as_str());
+    let [old, new]: [BTreeMap<_, _>; 2] = [before, after].map(|keys| keys.iter().cloned().collect());
+    let gone = before.iter().filter(|(path, _)| !new.contains_key(path));
+    let all = after.iter().chain(gone).map(|(path, _)| path);
     let all =
-        all.map(|key| ChangedKey { key: key.to_owned(), before: old.get(key).cloned(), after: new.get(key).cloned() });
+        all.map(|path| ChangedKey { key: path.clone(), before: old.get(path).cloned(), after: new.get(path).cloned() });
     all.filter(|key| key.before != key.after).collect()
 }

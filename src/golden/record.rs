@@ -6,6 +6,7 @@
 
 use super::keys::Key;
 use super::states::{Run, State, States};
+use crate::sim::geometry::bounds;
 use glam::DVec3;
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -106,7 +107,7 @@ impl Record {
         if states.last().is_none() {
             return Err("`digests` is empty".to_owned());
         }
-        let keys = file.keys.iter().map(|line| Key::parse(line)).collect();
+        let keys = file.keys.iter().map(|line| key(line)).collect();
         Ok(Self { subject: file.subject, size: file.size, frames: file.frames, keys, states })
     }
 
@@ -135,7 +136,8 @@ impl Record {
         }
         let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
         let names: Vec<_> = runs.iter().map(|run| quoted(&run.name)).collect();
-        let keys: String = self.keys.iter().map(|key| format!("  {},\n", quoted(&key.to_string()))).collect();
+        let keys: String =
+            self.keys.iter().map(|(path, value)| format!("  {},\n", quoted(&format!("{path} = {value}")))).collect();
         format!(
             "# What a scene did when this was accepted. Written by localshape, not to be edited.\n\
              format = {FORMAT}\nsubject = {}\nsize = {:?}\nframes = {:?}\n\
@@ -154,6 +156,12 @@ impl Record {
             every * self.states.every,
         )
     }
+}
+
+/// The key of a line.
+fn key(line: &str) -> Key {
+    let (path, value) = line.split_once(" = ").unwrap_or((line, ""));
+    (path.to_owned(), value.to_owned())
 }
 
 /// Whether a text is a record.
@@ -216,11 +224,8 @@ fn stride(states: &States) -> usize {
 /// The step to which positions are rounded: a power of ten, about a hundred-thousandth of their extent over all frames (m).
 fn quantum(states: &States) -> f64 {
     let known = states.runs.iter().flat_map(|run| run.states.values()).filter_map(|state| state.positions.as_ref());
-    let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    for at in known.flatten() {
-        bounds = [bounds[0].min(*at), bounds[1].max(*at)];
-    }
-    let extent = (bounds[1] - bounds[0]).max_element();
+    let (low, high) = bounds(&known.flatten().copied().collect::<Vec<_>>());
+    let extent = (high - low).max_element();
     if !(extent.is_finite() && extent > 0.0) {
         return 1e-6;
     }
@@ -244,7 +249,7 @@ mod tests {
                 run.states.insert(frame, State { digest, positions: (frame % 10 == 0).then_some(at) });
             }
         }
-        let keys = ["title = \"½ '''\"", "gravity = [0, -9.8, 0]"].map(Key::parse).into();
+        let keys = ["title = \"½ '''\"", "gravity = [0, -9.8, 0]"].map(key).into();
         Record { subject: "fig4b.toml".into(), size: [320, 180], frames: [10, 20].into(), keys, states }
     }
 

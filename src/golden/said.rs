@@ -21,8 +21,8 @@ pub(super) fn of_scene(scene: &Scene, in_memory: Option<&SceneKeys>, settings: &
     };
     for (at, run) in scene.runs.iter().enumerate() {
         let path = format!("run[{at}].step");
-        keys.retain(|key| key.path != path);
-        keys.push(Key { path, value: format!("{} s", run.step) });
+        keys.retain(|(other, _)| *other != path);
+        keys.push((path, format!("{} s", run.step)));
     }
     keys
 }
@@ -31,7 +31,7 @@ pub(super) fn of_scene(scene: &Scene, in_memory: Option<&SceneKeys>, settings: &
 pub(super) fn of_figure(path: &Path, figure: &Figure) -> Vec<Key> {
     let of_scene = |scene: &Scene| {
         let name = scene.name.clone();
-        of_scene(scene, None, &[]).into_iter().map(move |key| Key { path: format!("{name}: {}", key.path), ..key })
+        of_scene(scene, None, &[]).into_iter().map(move |(path, value)| (format!("{name}: {path}"), value))
     };
     of_file(path, &[]).into_iter().chain(figure.scenes().iter().flat_map(of_scene)).collect()
 }
@@ -71,7 +71,7 @@ fn add(keys: &mut Vec<Key>, folder: &Path, path: String, value: Value) {
                 None if text.len() > LONGEST => digest(text.as_bytes()),
                 None => text,
             };
-            keys.push(Key { path, value });
+            keys.push((path, value));
         }
     }
 }
@@ -181,7 +181,7 @@ mod tests {
         let list =
             |last: u32| format!("body.nodes = {:?}", (0..60).chain([last]).map(|at| [at, 1]).collect::<Vec<_>>());
         let [one, other] = [60, 61].map(|last| keys(&list(last)));
-        assert!(one[0].value.starts_with("digest ") && one[0].value.len() == 19 && one != other, "{one:?}");
+        assert!(one[0].1.starts_with("digest ") && one[0].1.len() == 19 && one != other, "{one:?}");
         std::fs::write(folder.path().join("body.npz"), "one").expect("a file");
         let before = keys("body.file = 'body.npz'");
         std::fs::write(folder.path().join("body.npz"), "two").expect("a file");

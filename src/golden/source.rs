@@ -2,6 +2,7 @@
 
 use super::error::ComparisonError;
 use super::picture::{PictureError, Pixels, file};
+use crate::reading::beside::entries;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -37,8 +38,7 @@ pub(super) type Pictures = BTreeMap<String, Source>;
 pub(super) fn pictures_in(folder: &Path) -> Result<Pictures, ComparisonError> {
     let failed = |source| ComparisonError::Read { path: folder.into(), source };
     let mut pictures = Pictures::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
+    for path in entries(folder).map_err(failed)? {
         let Some(name) = path.file_name() else { continue };
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             continue;

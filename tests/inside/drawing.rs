@@ -28,7 +28,7 @@ fn drawn(scene: &Scene, moved: &Scene, moved_run: usize) -> Drawn {
         }
     }
     let record = Record { size: [320, 200], frames: [0].into(), states, ..Record::default() };
-    Drawn::new(record, BTreeMap::new(), true, Vec::new())
+    Drawn { origin: PathBuf::new(), record, pictures: Some(Pictures::new()), notes: Vec::new() }
 }
 
 /// The golden of drawn frames, read from its file as stored there.
