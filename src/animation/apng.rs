@@ -18,7 +18,7 @@ struct Patch {
 
 pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<Written, AnimationError> {
     let shots = animation.timeline.shots();
-    let [width, height] = animation.reel.size();
+    let [width, height] = animation.size;
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
@@ -29,10 +29,10 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     writer.write_chunk(ANIMATION_CONTROL, &control).map_err(failed)?;
 
     let patch = |at: usize| {
-        let image = animation.reel.image(shots[at].frame)?;
+        let image = (animation.image)(shots[at].frame)?;
         // The frame before is read again: a thread has every second frame or fewer, and reading takes a fraction of the
         // time of compressing.
-        let before = at.checked_sub(1).map(|before| animation.reel.image(shots[before].frame)).transpose()?;
+        let before = at.checked_sub(1).map(|before| (animation.image)(shots[before].frame)).transpose()?;
         Ok(Patch::new(&image, before.as_ref()))
     };
     let mut sequence = 0_u32;

@@ -49,8 +49,8 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
     let rate_each = f64::from(rate) / f64::from(of);
     let ticks = timeline.ticks(rate_each, 1);
     // H.264 and VP9 have one colour sample for four pixels, so sides are made even by extending the background.
-    let even @ [width, height] = animation.reel.size().map(|side| side.next_multiple_of(2));
-    let first = animation.reel.image(ticks[0].0)?;
+    let even @ [width, height] = animation.size.map(|side| side.next_multiple_of(2));
+    let first = (animation.image)(ticks[0].0)?;
     let ground = [first.pixels[0], first.pixels[1], first.pixels[2]];
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y"]);
@@ -87,7 +87,7 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
         in_order(
             ticks.len(),
             animation.threads.min(READERS),
-            |at| animation.reel.image(ticks[at].0).map(|image| padded(image, even, ground)),
+            |at| (animation.image)(ticks[at].0).map(|image| padded(image, even, ground)),
             |at, pixels| {
                 for _ in 0..ticks[at].1 {
                     film.write(process, &pixels)?;

@@ -20,7 +20,7 @@ const FIRST: f64 = 0.4;
 
 pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<Written, AnimationError> {
     let ticks = animation.timeline.at_most(RATE / LEAST as f64).ticks(RATE, LEAST);
-    let size @ [width, height] = animation.reel.size();
+    let size @ [width, height] = animation.size;
     let [Ok(wide), Ok(high)] = [width, height].map(u16::try_from) else {
         return Err(AnimationError::Wrong(format!(
             "{width}×{height} is too large for a GIF: it has 65535 pixels a side"
@@ -31,7 +31,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let mut frames: Vec<usize> = ticks.iter().map(|(frame, _)| *frame).collect();
     frames.sort_unstable();
     frames.dedup();
-    let count = |at: usize| animation.reel.image(frames[at]).map(|image| Counts::of(&image));
+    let count = |at: usize| (animation.image)(frames[at]).map(|image| Counts::of(&image));
     in_order(frames.len(), animation.threads, count, |at, more| {
         counts.add(&more);
         animation.report(FIRST * (at + 1) as f64 / frames.len() as f64)
@@ -48,7 +48,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     }
     encoder.write_raw_extension(COMMENT, &[animation.comment.as_bytes()]).map_err(failed)?;
 
-    let numbers = |at: usize| Ok(palette.numbers(&animation.reel.image(ticks[at].0)?));
+    let numbers = |at: usize| Ok(palette.numbers(&(animation.image)(ticks[at].0)?));
     let mut shown: Option<Vec<u8>> = None;
     in_order(ticks.len(), animation.threads, numbers, |at, numbers| {
         let mut frame = frame(size, numbers, &mut shown);

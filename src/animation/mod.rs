@@ -1,6 +1,6 @@
 //! Animations: frames with their durations, in one file.
 //!
-//! A [`Reel`] returns frames by number, a [`Timeline`] has the duration of each, and [`Animation::write`] makes a file
+//! A function returns frames by number, a [`Timeline`] has the duration of each, and [`Animation::write`] makes a file
 //! in one of several [`Format`]s. Threads decode and compress a few frames ahead of the writer and free them
 //! afterwards, so memory is bounded for any length. The file has the same bytes for any number of threads, and is
 //! written completely or not at all.
@@ -20,7 +20,6 @@ pub use format::Format;
 pub(crate) use resize::resized;
 pub use timeline::{Shot, Timeline};
 
-use crate::golden::Pixels;
 use crate::output::AtomicFile;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -34,25 +33,12 @@ pub struct Image {
     pub pixels: Vec<u8>,
 }
 
-impl From<Pixels> for Image {
-    fn from(picture: Pixels) -> Self {
-        Self { size: picture.size, pixels: picture.bytes }
-    }
-}
-
-/// Frames of one size, with random access.
-pub trait Reel: Sync {
-    /// Width and height of every frame (px).
-    fn size(&self) -> [u32; 2];
-
-    /// A frame by its number, from 0.
-    fn image(&self, frame: usize) -> Result<Image, AnimationError>;
-}
-
 /// The contents and options of a file.
 pub struct Animation<'a> {
-    /// The frames.
-    pub reel: &'a dyn Reel,
+    /// Width and height of every frame (px).
+    pub size: [u32; 2],
+    /// Returns a frame by its number, from 0. Called on several threads.
+    pub image: &'a (dyn Fn(usize) -> Result<Image, AnimationError> + Sync),
     /// The duration of each frame. It has at least one shot.
     pub timeline: &'a Timeline,
     /// How many times it is played; 0 for ever. Only APNG and GIF can store this.

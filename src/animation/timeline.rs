@@ -3,7 +3,7 @@
 /// A frame and its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shot {
-    /// The number of the frame in its reel.
+    /// The number of the frame.
     pub frame: usize,
     /// Duration (s), more than 0.
     pub duration: f64,

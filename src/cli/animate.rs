@@ -6,7 +6,7 @@ use super::film::{comment, replaceable, summary};
 use super::frames::FrameRanges;
 use super::interrupt;
 use super::options::{PrintOptions, ThreadOptions, number_in};
-use crate::animation::{Animation, AnimationError, Format, Image, Reel, Timeline, Written, resized};
+use crate::animation::{Animation, AnimationError, Format, Image, Timeline, Written, resized};
 use crate::golden::Pixels;
 use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, picture_size, read_tags};
 use crate::reading::beside::{self, name_of};
@@ -133,7 +133,8 @@ impl Animate {
     ) -> Result<Written, AnimationError> {
         let (plays, threads) = (self.plays.unwrap_or(0), self.threads.count());
         let _lock = FolderLock::beside_others(folder_of(&self.out));
-        Animation { reel, timeline, plays, comment, threads, progress, go_on }.write(format, &self.out)
+        let (size, image) = (reel.size, &|frame| reel.image(frame));
+        Animation { size, image, timeline, plays, comment, threads, progress, go_on }.write(format, &self.out)
     }
 
     fn report(&self, frames: usize, written: &Written) -> Result<(), Failure> {
@@ -204,9 +205,9 @@ pub(super) fn make(
 ) -> Result<Written, Failure> {
     let reel = Folder::open(folder, |_| Some(Ok(frames.to_vec())), None, None)?;
     let timeline = Timeline::of(&reel.moments);
-    let go_on = &|| !interrupt::requested();
+    let (size, image, go_on) = (reel.size, &|frame| reel.image(frame), &|| !interrupt::requested());
     let animation =
-        Animation { reel: &reel, timeline: &timeline, plays: 0, comment, threads, progress: &|_| {}, go_on };
+        Animation { size, image, timeline: &timeline, plays: 0, comment, threads, progress: &|_| {}, go_on };
     Ok(animation.write(*format, path)?)
 }
 
@@ -223,11 +224,8 @@ struct Folder {
     size: [u32; 2],
 }
 
-impl Reel for Folder {
-    fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
+impl Folder {
+    /// A frame by its number, from 0.
     fn image(&self, frame: usize) -> Result<Image, AnimationError> {
         let path = &self.paths[frame];
         let picture = |source| AnimationError::Picture { path: path.clone(), source };
@@ -238,11 +236,9 @@ impl Reel for Folder {
                 format!("{} has changed meanwhile; try again when no other process writes there", path.display());
             return Err(AnimationError::Wrong(message));
         }
-        Ok(resized(found.into(), self.size))
+        Ok(resized(Image { size: found.size, pixels: found.bytes }, self.size))
     }
-}
 
-impl Folder {
     /// Reads the labels of frames in a folder: of the requested ones up to the last one there, or of all. Frames are
     /// scaled to a width (px), if it is given. Frames of another program follow each other at a rate (1/s).
     fn open(

@@ -1,7 +1,7 @@
 //! `animate`: the files as read by other decoders, and messages about frames that do not fit.
 
 use crate::cli::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, frame_tags, has_ffmpeg, lasting, python, run};
-use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Timeline};
+use localshape::animation::{Animation, Format, Image, Timeline};
 use localshape::internals::{Shown, Tags};
 use std::path::Path;
 use std::process::Command;
@@ -144,19 +144,6 @@ fn nothing_flickers_where_nothing_moves() {
     assert!(frames.iter().all(|(shown, _)| shown[below..] == frames[0].0[below..]));
 }
 
-/// Frames without files.
-struct Drawn;
-
-impl Reel for Drawn {
-    fn size(&self) -> [u32; 2] {
-        SIZE
-    }
-
-    fn image(&self, frame: usize) -> Result<Image, AnimationError> {
-        Ok(Image { size: SIZE, pixels: pixels(frame as u64, SIZE) })
-    }
-}
-
 /// The library is called, as the comment of a file has the command, and with it the number of threads.
 #[test]
 fn any_number_of_threads_makes_the_same_bytes() {
@@ -170,7 +157,8 @@ fn any_number_of_threads_makes_the_same_bytes() {
         let path = place.path(format!("out.{ending}"));
         let made = |threads: usize| {
             let animation = Animation {
-                reel: &Drawn,
+                size: SIZE,
+                image: &|frame| Ok(Image { size: SIZE, pixels: pixels(frame as u64, SIZE) }),
                 timeline: &Timeline::of(&moments),
                 plays: 0,
                 comment: "made by a test",
