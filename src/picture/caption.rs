@@ -470,15 +470,15 @@ pub(super) fn diverges(run: &RunFrame) -> &'static str {
 
 /// The number at the lower right of a run that has not diverged, of a body of an extent (m).
 pub(super) fn number(extent: f64, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
-    let words = |value: String, names: [&str; 2]| names.map(|name| [value.clone(), name.to_owned()]).to_vec();
-    if let Some(ratio) = area_ratio {
-        let widest = "−0.00".to_owned();
-        let wordings = words(number::ratio(ratio), ["smallest area ratio", "area ratio"]);
-        return Number { widest, wordings, is_loud: false };
-    }
-    let value = number::length(snapshot.diagnostics.shape_error, extent);
-    let widest = number::length(0.888 * extent, extent);
-    Number { widest, wordings: words(value, ["shape error", "error"]), is_loud: false }
+    let (value, widest, names) = match area_ratio {
+        Some(ratio) => (number::ratio(ratio), "−0.00".to_owned(), ["smallest area ratio", "area ratio"]),
+        None => {
+            let length = |metres: f64| number::length(metres, extent);
+            (length(snapshot.diagnostics.shape_error), length(0.888 * extent), ["shape error", "error"])
+        }
+    };
+    let wordings = names.map(|name| [value.clone(), name.to_owned()]).to_vec();
+    Number { widest, wordings, is_loud: false }
 }
 
 #[cfg(test)]

@@ -2,8 +2,6 @@
 //! edges as finely as its neighbours, so that there are no gaps between them. All other faces, and edges between sets
 //! of elements, keep whole sides; gaps there are round-off.
 
-use std::collections::HashMap;
-
 /// The cut of a face into pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Cut {
@@ -62,7 +60,7 @@ pub(super) struct CutPatch {
 }
 
 impl CutPatch {
-    fn new(cut: Cut) -> Self {
+    pub(super) fn new(cut: Cut) -> Self {
         if cut.sides == [cut.cells; 4] { Self::even(u32::from(cut.cells)) } else { Self::uneven(cut) }
     }
 
@@ -143,16 +141,6 @@ impl CutPatch {
 /// The triangles of a cell, by its first corner and the number of points in a row.
 fn cell(across: u32) -> impl Fn(u32) -> [[u32; 3]; 2] {
     move |at| [[at, at + 1, at + across + 1], [at, at + across + 1, at + across]]
-}
-
-/// The grids used so far.
-#[derive(Default)]
-pub(super) struct CutPatches(HashMap<Cut, CutPatch>);
-
-impl CutPatches {
-    pub(super) fn of(&mut self, cut: Cut) -> &CutPatch {
-        self.0.entry(cut).or_insert_with(|| CutPatch::new(cut))
-    }
 }
 
 #[cfg(test)]

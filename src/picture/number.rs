@@ -140,16 +140,7 @@ pub(super) fn with_minus(text: String) -> String {
 pub(super) fn round_below(value: f64) -> f64 {
     let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));
     let digit = value / libm::pow(10.0, power);
-    times_ten(
-        if digit >= 5.0 {
-            5.0
-        } else if digit >= 2.0 {
-            2.0
-        } else {
-            1.0
-        },
-        power,
-    )
+    times_ten([5.0, 2.0].into_iter().find(|round| digit >= *round).unwrap_or(1.0), power)
 }
 
 /// A number times a power of ten, rounded like its text.

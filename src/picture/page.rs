@@ -266,13 +266,9 @@ impl Path {
 
     pub(crate) fn circle(middle: Vec2, radius: f32) -> Self {
         let mut path = Self::default();
-        path.add_circle(middle, radius);
+        path.add_arc(middle, radius, [0.0, TAU], true);
+        path.0.push(Step::Close);
         path
-    }
-
-    pub(crate) fn add_circle(&mut self, middle: Vec2, radius: f32) {
-        self.add_arc(middle, radius, [0.0, TAU], true);
-        self.0.push(Step::Close);
     }
 
     /// Adds a closed polygon.

@@ -265,7 +265,7 @@ impl<'a> Casters<'a> {
                 outward * (cosine * first + sine * second) + (1.0 - outward * outward).sqrt() * plane.normal
             })
             .collect();
-        let turns: Vec<_> = triangles.iter().map(|triangle| Turn::new(triangle.map(|at| feet[at as usize]))).collect();
+        let turns: Vec<_> = triangles.iter().map(|triangle| turn(triangle.map(|at| feet[at as usize]))).collect();
         let mut outlines = Outlines::default();
         let mut shade = |directions: &[DVec3], blur: f64, low: DVec2, length: f64| {
             let scale = CELLS as f64 / length;
@@ -319,14 +319,10 @@ fn snapped(low: DVec2, length: f64) -> [[f64; 2]; 2] {
 }
 
 /// The signed area of a triangle's shadow: a constant, and coefficients for both parts of the slant of the light.
-struct Turn([f64; 3]);
-
-impl Turn {
-    fn new([a, b, c]: [Foot; 3]) -> Self {
-        let [one, other] = [b.at - a.at, c.at - a.at];
-        let by_slant = (c.above - a.above) * one.perp() - (b.above - a.above) * other.perp();
-        Self([one.perp_dot(other), by_slant.x, by_slant.y])
-    }
+fn turn([a, b, c]: [Foot; 3]) -> [f64; 3] {
+    let [one, other] = [b.at - a.at, c.at - a.at];
+    let by_slant = (c.above - a.above) * one.perp() - (b.above - a.above) * other.perp();
+    [one.perp_dot(other), by_slant.x, by_slant.y]
 }
 
 /// Directions that are processed together: one for each bit of a word.
@@ -343,10 +339,10 @@ struct Outlines {
 }
 
 impl Outlines {
-    fn find(&mut self, turns: &[Turn], edges: &[Edge], slants: &[DVec2]) {
+    fn find(&mut self, turns: &[[f64; 3]], edges: &[Edge], slants: &[DVec2]) {
         let slants: Vec<_> = slants.iter().zip(0..).map(|(slant, at)| (slant.x, slant.y, 1_u64 << at)).collect();
         self.turned.clear();
-        self.turned.extend(turns.iter().map(|&Turn([constant, x, y])| {
+        self.turned.extend(turns.iter().map(|&[constant, x, y]| {
             let bit = |&(along_x, along_y, bit)| if constant + x * along_x + y * along_y > 0.0 { bit } else { 0 };
             slants.iter().map(bit).fold(0, |bits, bit| bits | bit)
         }));

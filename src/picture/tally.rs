@@ -81,11 +81,6 @@ impl Tally {
         if count > MOST_SQUARES { tally.as_bar() } else { tally }
     }
 
-    /// Whether each element has a square in a room (px), instead of a bar for each body.
-    pub(super) fn has_squares(&self, scale: Scale, room: f64) -> bool {
-        self.squares(scale, room).is_some()
-    }
-
     /// The tally as bars.
     pub(super) fn as_bar(&self) -> Self {
         let bar =
@@ -153,8 +148,8 @@ impl Tally {
         }
     }
 
-    /// Side of the squares and the gap between them (px), if squares fit.
-    fn squares(&self, scale: Scale, room: f64) -> Option<[f64; 2]> {
+    /// Side of the squares and the gap between them in a room (px), if squares fit; else each body has a bar.
+    pub(super) fn squares(&self, scale: Scale, room: f64) -> Option<[f64; 2]> {
         let [columns, rows] = [self.columns(), self.rows()].map(|count| count as f64);
         if rows == 0.0 {
             return None;

@@ -151,10 +151,7 @@ impl Fonts {
 
     /// The fonts in which a text of a weight is looked up, in order.
     fn order(&self, weight: Weight) -> impl Iterator<Item = u8> {
-        let built_in = match weight {
-            Weight::Regular => 0,
-            Weight::SemiBold => 1,
-        };
+        let built_in = weight as u8;
         // The scene's own are stored after the built-in ones; a single one serves both weights.
         let own = match self.faces.len() {
             2 => None,

@@ -63,7 +63,7 @@ fn outlines_cover_what_triangles_cover() {
     let feet: Vec<_> = points.iter().map(|&point| plane.foot(point)).collect();
     let slants: Vec<_> = (0..AT_ONCE).map(|at| DVec2::from_angle(at as f64) * (0.03 * at as f64)).collect();
     let edges = edges(&triangles);
-    let turns: Vec<_> = triangles.iter().map(|triangle| Turn::new(triangle.map(|at| feet[at as usize]))).collect();
+    let turns: Vec<_> = triangles.iter().map(|triangle| turn(triangle.map(|at| feet[at as usize]))).collect();
     let mut outlines = Outlines::default();
     outlines.find(&turns, &edges, &slants);
     for (at, &slant) in slants.iter().enumerate() {

@@ -185,11 +185,6 @@ impl<'a> Draft<'a> {
         })
     }
 
-    /// The boxes around carried surfaces.
-    pub(super) fn carried_boxes(&self) -> &[PixelBox] {
-        &self.boxes()[self.bodies.parts.len() - self.bodies.skin.fine.len()..]
-    }
-
     /// The points of carried surfaces (m), body after body.
     pub(super) fn carried(&self) -> &[DVec3] {
         self.skin.get(self.bodies.skin.nodes.len()..).unwrap_or_default()

@@ -15,7 +15,8 @@ impl Draft<'_> {
         let region = |of: &PixelBox| region(self.viewport, of, room);
         let [nodes, around] =
             [&self.position[..], around_obstacles].map(|points| region(&PixelBox::new(&self.lens, points)));
-        let body = self.carried_boxes().iter().map(region).fold(nodes, union);
+        let carried = &self.boxes()[self.bodies.parts.len() - self.bodies.skin.fine.len()..];
+        let body = carried.iter().map(region).fold(nodes, union);
         // Obstacles are drawn below the rows of words, if there are any.
         let has_words = self.scene.view.labels.are_in_panels();
         let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });

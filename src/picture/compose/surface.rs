@@ -4,7 +4,7 @@
 use super::draft::Draft;
 use crate::bins::Bins;
 use crate::look::BODIES;
-use crate::picture::cut::{CutPatch, CutPatches, Cuts};
+use crate::picture::cut::{CutPatch, Cuts};
 use crate::picture::ears::{self, newell};
 use crate::picture::field::Shades;
 use crate::picture::measures::SMALLEST_ELEMENT;
@@ -104,8 +104,6 @@ struct FaceSides {
     /// The mean unit normal of each face.
     normals: Vec<DVec3>,
     sides: Vec<FaceSide>,
-    /// The places where the values of one edge's sides change their sign, in lengths of the edge.
-    changes: Vec<f64>,
 }
 
 impl FaceSides {
@@ -138,14 +136,14 @@ impl FaceSides {
 
     /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of
     /// its sides is visible, that of another is not. An edge with a single side is a border of the surface.
-    fn contours(&mut self, sides: &[FaceSide], draw: &mut dyn FnMut([f64; 2])) {
+    fn contours(&self, sides: &[FaceSide], draw: &mut dyn FnMut([f64; 2])) {
         // Nearly all edges have no such part.
         let are_away = |side: &FaceSide, away: bool| self.of(side).iter().all(|&seen| (seen < 0.0) == away);
         if sides.len() > 1 && [false, true].iter().any(|&away| sides.iter().all(|side| are_away(side, away))) {
             return;
         }
-        let mut changes = std::mem::take(&mut self.changes);
-        changes.clear();
+        // The places where the values of the sides change their sign, in lengths of the edge.
+        let mut changes = Vec::new();
         for side in sides {
             let ([from, to], values) = (side.ends, self.of(side));
             for (piece, two) in values.windows(2).enumerate().filter(|(_, two)| (two[0] < 0.0) != (two[1] < 0.0)) {
@@ -172,7 +170,6 @@ impl FaceSides {
         if let Some(start) = begin {
             draw([start, 1.0]);
         }
-        self.changes = changes;
     }
 }
 
@@ -202,7 +199,7 @@ impl Surfaces<'_> {
         if faces.is_empty() {
             return;
         }
-        let (cuts, mut grids) = (self.cuts(faces, total), CutPatches::default());
+        let (cuts, mut grids) = (self.cuts(faces, total), HashMap::new());
         // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
@@ -222,7 +219,8 @@ impl Surfaces<'_> {
             self.corners(side, &mut patch.nodes);
             let ears = self.ears(&patch.nodes);
             let ears = ears.as_deref();
-            let grid = self.bilinear(&patch.nodes, ears).map(|corners| grids.of(cuts.face(at, corners)));
+            let cut = self.bilinear(&patch.nodes, ears).map(|corners| cuts.face(at, corners));
+            let grid = cut.map(|cut| &*grids.entry(cut).or_insert_with(|| CutPatch::new(cut)));
             let before = mesh.triangles.len();
             // Turned-over elements are hatched, flat ones among the others dotted.
             let dots = (kind == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
@@ -239,12 +237,12 @@ impl Surfaces<'_> {
         mesh.triangles.append(&mut last);
         let sides = borders.sorted(self.draft.body.len());
         for edge in sides.chunk_by(|one, other| ordered(one.ends) == ordered(other.ends)) {
-            self.edge(edge, &mut borders, kind, lines);
+            self.edge(edge, &borders, kind, lines);
         }
     }
 
     /// The lines along one edge, at which the sides of some faces meet.
-    fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, kind: LineKind, lines: &mut SurfaceLines) {
+    fn edge(&self, sides: &[FaceSide], borders: &FaceSides, kind: LineKind, lines: &mut SurfaceLines) {
         let [a, b] = ordered(sides[0].ends);
         let (start, end) = (self.at(a), self.at(b));
         let faces_away = |side: &FaceSide| borders.of(side).iter().all(|&seen| seen < 0.0);

@@ -277,7 +277,7 @@ impl Layout {
         let columns = columns.clamp(1, count.max(1));
         let rows = count.div_ceil(columns).max(1);
         let around = Self::around(view);
-        let scale = Scale::new(size, [0, 0, size[0] / columns as u32, size[1] / rows as u32]).within(view);
+        let scale = Scale::at(print::unit(size, [size[0] / columns as u32, size[1] / rows as u32])).within(view);
         let panels = |row: usize| {
             let key = |column: usize| if row * columns + column < count { Part::Panel } else { Part::Edge };
             (0..columns).map(|column| Node::new(key(column), 0.0).stretched()).collect()
@@ -294,7 +294,7 @@ impl Layout {
 
     /// Sizes of type and lines around the panels of a view; they do not depend on the panels.
     pub(super) fn around(view: &View) -> Scale {
-        Scale { unit: unit(view), ..Scale::REFERENCE }.within(view)
+        Scale::at(unit(view)).within(view)
     }
 }
 
@@ -405,10 +405,6 @@ impl Scale {
     /// The sizes of the reference picture.
     pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, least: 0.0, edges: [BESIDE; 2] };
 
-    pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
-        Self { unit: print::unit(size, [panel[2], panel[3]]), ..Self::REFERENCE }
-    }
-
     /// The sizes of a picture with a number of pixels per pixel of the reference picture.
     pub(super) fn at(unit: f64) -> Self {
         Self { unit, ..Self::REFERENCE }
@@ -435,7 +431,7 @@ impl Scale {
 
     /// Pixels per pixel of the reference picture, for type and for objects in its rows.
     pub(super) fn type_unit(self) -> f64 {
-        self.of_type(self.unit)
+        self.unit * self.type_factor
     }
 
     /// The same for names, clocks and counts, which are larger than other type. Where that is large, as in small pictures for print, they grow
@@ -445,11 +441,6 @@ impl Scale {
         const GROWN: f64 = 1.5;
         const LARGER: f64 = 1.25;
         self.type_unit() * (GROWN / self.type_factor).clamp(LARGER * steps::TEXT / steps::NAME, 1.0)
-    }
-
-    /// A length, scaled like the type.
-    pub(super) fn of_type(self, length: f64) -> f64 {
-        length * self.type_factor
     }
 
     /// The heights of the rows of a name, a second line and events in a panel (px).
@@ -591,7 +582,8 @@ mod tests {
         let view = View::default();
         assert_eq!(clear_of_words([640, 0, 640, 720], &view, Scale::REFERENCE), [680, 104, 560, 519]);
         for panel in [[0, 0, 1, 1], [5, 7, 30, 12], [0, 0, 3000, 40]] {
-            let [x, y, width, height] = clear_of_words(panel, &view, Scale::new([64, 64], panel));
+            let [x, y, width, height] =
+                clear_of_words(panel, &view, Scale::at(print::unit([64, 64], [panel[2], panel[3]])));
             assert!(x >= panel[0] && x + width <= panel[0] + panel[2]);
             assert!(y >= panel[1] && y + height <= panel[1] + panel[3]);
         }

@@ -15,7 +15,7 @@ mod cell;
 mod drawn;
 
 use super::NoRoom;
-use crate::look::{Labels, Palette};
+use crate::look::{Labels, Palette, print};
 use crate::picture::Item;
 use crate::picture::Picture;
 use crate::picture::caption::Writer;
@@ -113,7 +113,8 @@ impl<'a> Diagram<'a> {
             Cell::new(&composers[scene], &moments.forces[scene], run, compare)
         });
         let [width, height] = figure.size;
-        let scale = Scale::new(figure.size, [0, 0, width / columns as u32, height]).with(&composers[0].scene.view);
+        let scale =
+            Scale::at(print::unit(figure.size, [width / columns as u32, height])).with(&composers[0].scene.view);
         let (cells, size) = (cells.collect(), figure.size.map(f64::from));
         Self { forces, composers, runs, columns, rows, cells, size, scale }
     }

@@ -24,7 +24,7 @@ const FLAT: &str = "flat: volume below 1 %";
 /// Gives the tallies of all shown bodies one style: squares for all, or bars.
 pub(super) fn unify(composers: &mut [Composer<'_>], shown: &[[usize; 2]], scale: Scale, layout: &SheetLayout) {
     let (scale, room) = size_of_tallies(scale, layout);
-    if !tallies(composers, shown).all(|tally| tally.has_squares(scale, room)) {
+    if !tallies(composers, shown).all(|tally| tally.squares(scale, room).is_some()) {
         let all = composers.iter_mut().flat_map(|composer| &mut composer.bodies);
         all.for_each(|bodies| bodies.tally = bodies.tally.as_bar());
     }

@@ -114,8 +114,7 @@ mod tests {
         let sheet = Sheet { scenes, columns, rows, charts: charts_shown, number: None, from: 0.0, split: None };
         let scale = Scale::at(crate::look::print::unit_of_sheet(size));
         let (palette, fonts) = (Palette::of(Theme::Light), Fonts::default());
-        let (marks, curves, words) = Default::default();
-        let writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
+        let writer = Writer::new(&palette, &fonts, scale);
         let labels = RowLabels::new(&sheet, &writer, true, f64::from(size[0]));
         let charts = [charts, 2];
         let wanted = Wanted { titles: [1, caption], is_figure: true, headings: 1, charts, ..Wanted::default() };
