@@ -1,5 +1,6 @@
 //! Triangulation of polygons that are not convex, by ear clipping.
 
+use super::plane::around;
 use crate::sim::Body;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
@@ -46,9 +47,8 @@ fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
 }
 
 /// The mean normal of a polygon, with twice the length of its area (Newell's method).
-pub(super) fn newell(corners: &[DVec3]) -> DVec3 {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()
+pub(crate) fn newell(corners: &[DVec3]) -> DVec3 {
+    around(corners).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()
 }
 
 /// The triangles of a polygon that is not convex and does not cross itself, by cutting off its ears; `None` for others.

@@ -44,11 +44,12 @@ pub use chart::{Annotation, Axis, Chart, Layer, Name};
 pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
 pub use diagram::{Diagram, TextStyle, colours, dashes};
+pub(crate) use ears::newell;
 pub(crate) use layout::Rectangle;
 #[cfg(test)]
 pub(crate) use page::winding;
 pub(crate) use page::{Image, Item, Paint, Path, Pen, Step};
-pub(crate) use plane::{clipped, sides};
+pub(crate) use plane::{around, clipped, sides};
 pub(crate) use shadow::{CELLS, Shade};
 pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 

@@ -3,6 +3,7 @@
 
 use super::measures::BEAD_RIM;
 use super::narrow::narrow;
+use super::plane::around;
 use super::{Colour, Rectangle, TextRun};
 use crate::bins::Bins;
 use glam::{DVec2, Vec2};
@@ -326,6 +327,5 @@ pub(super) fn direction(angle: f32) -> Vec2 {
 
 /// Twice the area of a polygon, positive if it runs clockwise on the page.
 pub(crate) fn winding(points: &[Vec2]) -> f32 {
-    let next = points.iter().cycle().skip(1);
-    points.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum()
+    around(points).map(|(a, b)| a.perp_dot(*b)).sum()
 }

@@ -52,10 +52,14 @@ pub(crate) fn sides([left, top, width, height]: [f64; 4]) -> [f64; 4] {
 /// The whole line, as a range for [`clipped`].
 pub(super) const WHOLE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
+/// The sides of a polygon: each corner with the next.
+pub(crate) fn around<T>(corners: &[T]) -> impl Iterator<Item = (&T, &T)> {
+    corners.iter().zip(corners.iter().cycle().skip(1))
+}
+
 /// Whether a polygon winds around a point.
 pub(super) fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
-    let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    let crossed = sides.filter(|(a, b)| {
+    let crossed = around(polygon).filter(|(a, b)| {
         (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
     });
     crossed.count() % 2 == 1

@@ -9,7 +9,7 @@ use crate::picture::measures::{
 };
 use crate::picture::{
     Bead, Colour, Item, Line, LineKind, Paint, Palette, Pane, Panel, Path, Pen, Picture, Rectangle, Second, Step,
-    Stroke, clipped, sides,
+    Stroke, around, clipped, newell, sides,
 };
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use std::collections::HashSet;
@@ -92,8 +92,7 @@ impl<'a> Depths<'a> {
         let corners: Vec<_> = pane.corners.iter().map(|corner| self.in_clip_space(corner.position)).collect();
         let sides = around(&corners).filter_map(|(&a, &b)| self.before_eye([a, b])).flatten();
         let corners: Vec<_> = sides.map(|at| self.place(at, 0.0)).collect();
-        let first = *corners.first()?;
-        let normal: DVec3 = around(&corners).map(|(&a, &b)| (a - first).cross(b - first)).sum();
+        let normal = newell(&corners);
         (normal.z.abs() > 1e-3).then_some(Plate { corners, normal, left: 1.0 - OVER_BODIES * pane.alpha })
     }
 
@@ -519,11 +518,6 @@ fn close_gaps(samples: &mut [&mut [usize; 3]]) {
         let closed = around(&around(&levels, usize::max), usize::min);
         samples.iter_mut().zip(closed).for_each(|(levels, level)| levels[at] = level);
     }
-}
-
-/// Consecutive corners of a polygon.
-fn around<T>(corners: &[T]) -> impl Iterator<Item = (&T, &T)> {
-    corners.iter().zip(corners.iter().cycle().skip(1))
 }
 
 /// A line in the picture: its ends (px), with their depths.

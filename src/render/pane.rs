@@ -4,7 +4,7 @@ use super::panel::{Panels, linear};
 use super::pipeline::{Recipe, for_vertices, shader};
 use super::target::Layouts;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Palette, Pane, PaneCorner, Picture};
+use crate::picture::{Palette, Pane, PaneCorner, Picture, around};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
@@ -100,7 +100,7 @@ fn add_fan(pane: &Pane, palette: &Palette, corners: &mut Vec<Corner>) {
         colour: linear(pane.colour).extend(pane.alpha).to_array(),
         lined: linear(palette.grid).extend(if pane.grid { 1.0 } else { 0.0 }).to_array(),
     };
-    for (one, other) in pane.corners.iter().zip(pane.corners.iter().cycle().skip(1)) {
+    for (one, other) in around(&pane.corners) {
         corners.push(middle);
         corners.extend([one, other].map(|&PaneCorner { position, grid, from_middle }| Corner {
             position,

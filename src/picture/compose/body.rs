@@ -8,7 +8,7 @@ use crate::picture::compose::wire::Wire;
 use crate::picture::layout::Scale;
 use crate::picture::layout::steps::{CLOSE, RING, THIN};
 use crate::picture::shell::{Side, boundaries, is_broken};
-use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
+use crate::picture::{Bead, LineKind, Mesh, Stroke};
 use crate::sim::Field;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -89,9 +89,8 @@ impl Draft<'_> {
         // Coloured strokes replace them.
         if self.of_nodes.is_empty() {
             lines.drawn.extend(self.bare_lines().into_iter().map(|(ends, over)| {
-                let [from, to] = ends.map(|end| self.relative(end));
                 let kind = if over { LineKind::AlarmEdge } else { LineKind::Bar };
-                Line { from, to, kind, strength: 1.0 }
+                self.line(ends, kind, 1.0)
             }));
         }
         [sound, turned_over]

@@ -325,13 +325,13 @@ impl Surfaces<'_> {
             beside.filter(|(_, beside)| holds(beside)).map(|(edge, _)| ends(edge)).collect()
         };
         for ends in self.long(&edges_where(&|[one, other]| side(one) != side(other)), points) {
-            let line = self.line(ends, LineKind::FineContour, 1.0);
+            let line = self.draft.line(ends, LineKind::FineContour, 1.0);
             lines.drawn.push(line);
             lines.borders.push(Border { line, edge: None });
         }
         let are_seen = |&edge: &usize| fine.beside[edge].iter().all(|&at| seen[at as usize]);
         let creases: Vec<_> = fine.creases.iter().map(|&edge| edge as usize).filter(are_seen).map(ends).collect();
-        let border = |ends| Border { line: self.line(ends, LineKind::Edge, 1.0), edge: None };
+        let border = |ends| Border { line: self.draft.line(ends, LineKind::Edge, 1.0), edge: None };
         lines.borders.extend(self.long(&creases, points).into_iter().map(border));
         if turned.is_empty() {
             return;
@@ -350,7 +350,7 @@ impl Surfaces<'_> {
         let points: Vec<_> = points.iter().copied().chain(more).collect();
         for ends in self.long(&rims, &points) {
             lines.borders.push(border(ends));
-            lines.drawn.push(self.line(ends, LineKind::AlarmContour, 1.0));
+            lines.drawn.push(self.draft.line(ends, LineKind::AlarmContour, 1.0));
         }
     }
 
@@ -400,7 +400,7 @@ impl Surfaces<'_> {
         }
         edges.sort_unstable();
         edges.dedup();
-        lines.drawn.extend(edges.into_iter().map(|ends| self.line(ends.map(|node| self.at(node)), kind, 0.0)));
+        lines.drawn.extend(edges.into_iter().map(|ends| self.draft.line(ends.map(|node| self.at(node)), kind, 0.0)));
     }
 
     /// The ends (m) of lines between pairs of points, joined, and without points that could not be told from straight lines.

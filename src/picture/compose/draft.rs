@@ -8,10 +8,10 @@ use crate::picture::camera::Lens;
 use crate::picture::field::Shades;
 use crate::picture::layout::steps::SHORT;
 use crate::picture::layout::{self, Rectangle, Scale};
-use crate::picture::narrow::{narrow_count, narrow_point};
+use crate::picture::narrow::{narrow, narrow_count, narrow_point};
 use crate::picture::plane::sides;
 use crate::picture::shadow::key_light;
-use crate::picture::{Colour, Framing};
+use crate::picture::{Colour, Framing, Line, LineKind};
 use crate::runner::RunFrame;
 use crate::scene::Scene;
 use crate::sim::{Assembly, Body, Dimension, Snapshot, Status};
@@ -188,6 +188,11 @@ impl<'a> Draft<'a> {
     /// The points of carried surfaces (m), body after body.
     pub(super) fn carried(&self) -> &[DVec3] {
         self.skin.get(self.bodies.skin.nodes.len()..).unwrap_or_default()
+    }
+
+    /// A line between two points (m).
+    pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, strength: f64) -> Line {
+        Line { from: self.relative(from), to: self.relative(to), kind, strength: narrow(strength) }
     }
 
     /// A point (m) in the panel's coordinates.

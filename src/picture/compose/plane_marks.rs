@@ -10,7 +10,7 @@ use crate::picture::flat::soft;
 use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, MARGIN, RING, SHORT, STRONG, THIN};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{Path, Step, direction, point, winding};
-use crate::picture::plane::{WHOLE, clipped, from_side, is_inside, sides};
+use crate::picture::plane::{WHOLE, around, clipped, from_side, is_inside, sides};
 use crate::picture::shell::is_broken;
 use crate::scene::Scene;
 use crate::sim::{Dimension, Motion, Obstacle};
@@ -254,8 +254,7 @@ fn outside(polygon: &[DVec2], point: DVec2) -> f64 {
     if is_inside(polygon, point) {
         return 0.0;
     }
-    let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    sides.map(|(&a, &b)| from_side(point, a, b)).fold(f64::INFINITY, f64::min)
+    around(polygon).map(|(&a, &b)| from_side(point, a, b)).fold(f64::INFINITY, f64::min)
 }
 
 /// A place inside a polygon far from all its sides, and its distance from them: the middle of a triangle's inscribed
@@ -267,8 +266,7 @@ fn roomiest(corners: &[DVec2]) -> Circle {
         let around: f64 = lengths.iter().sum();
         middle = (a * lengths[0] + b * lengths[1] + c * lengths[2]) / around.max(f64::MIN_POSITIVE);
     }
-    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-    let room = sides.map(|(&a, &b)| from_side(middle, a, b)).fold(f64::INFINITY, f64::min);
+    let room = around(corners).map(|(&a, &b)| from_side(middle, a, b)).fold(f64::INFINITY, f64::min);
     (middle, if is_inside(corners, middle) { room } else { 0.0 })
 }
 

@@ -251,7 +251,7 @@ impl Surfaces<'_> {
         // Smaller ones would be invisible.
         let is_large = self.draft.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
         if is_large && !self.is_fine() && if is_hidden { behind } else { in_front } {
-            lines.drawn.push(self.line([start, end], kind, if behind { 1.0 } else { 0.0 }));
+            lines.drawn.push(self.draft.line([start, end], kind, if behind { 1.0 } else { 0.0 }));
         }
         let mut is_contour = false;
         borders.contours(sides, &mut |part| {
@@ -264,7 +264,7 @@ impl Surfaces<'_> {
             && !is_dark
             && (borders.are_bent(sides) || self.draft.shades.as_ref().is_some_and(Shades::jump))
         {
-            lines.borders.push(Border { line: self.line([start, end], kind, 1.0), edge: Some([a, b]) });
+            lines.borders.push(Border { line: self.draft.line([start, end], kind, 1.0), edge: Some([a, b]) });
         }
     }
 
@@ -281,7 +281,7 @@ impl Surfaces<'_> {
 
     /// A place where the surface turns away from the viewer.
     fn contour(&self, ends: [DVec3; 2], edge: Option<[u32; 2]>, kind: LineKind, lines: &mut SurfaceLines) {
-        let line = self.line(ends, kind.contour(), 1.0);
+        let line = self.draft.line(ends, kind.contour(), 1.0);
         lines.drawn.push(line);
         lines.borders.push(Border { line, edge });
     }
@@ -318,11 +318,6 @@ impl Surfaces<'_> {
     /// The corners of a face in space that is a bilinear patch.
     fn bilinear(&self, nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
         nodes.try_into().ok().filter(|_| ears.is_none() && !self.draft.lens.orthographic)
-    }
-
-    /// A line between two points (m).
-    pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, strength: f64) -> Line {
-        Line { from: self.draft.relative(from), to: self.draft.relative(to), kind, strength: narrow(strength) }
     }
 
     /// The number of pieces of each face, among a total number of faces.

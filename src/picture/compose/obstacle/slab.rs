@@ -5,6 +5,7 @@ use super::shapes::{FACES, corners, edges};
 use super::space::Staging;
 use crate::picture::layout::steps::{CLOSE, FREE};
 use crate::picture::narrow::narrow;
+use crate::picture::plane::around;
 use crate::picture::shadow::Plane;
 use crate::picture::{Item, Pane, PaneCorner};
 use crate::runner::history::NearObstacles;
@@ -132,8 +133,7 @@ impl Staging<'_> {
                 let on = |point: DVec3, (out, height): HalfSpace| {
                     (out.dot(point) - height).abs() < 1e-9 * (self.extent() + height.abs())
                 };
-                let next = polygon.iter().cycle().skip(1);
-                let cut = polygon.iter().zip(next).filter(|&(&a, &b)| floors.iter().any(|&at| on(a, at) && on(b, at)));
+                let cut = around(&polygon).filter(|&(&a, &b)| floors.iter().any(|&at| on(a, at) && on(b, at)));
                 drawn.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.draft.relative(end))));
             }
             kept.extend(polygon);

@@ -5,6 +5,7 @@ use super::half_space::clipped_line;
 use super::shapes::{FACES, Lathe, edges, lathe};
 use super::space::Staging;
 use crate::picture::narrow::{narrow, narrow_point};
+use crate::picture::plane::around;
 use crate::picture::{Line, LineKind, Mesh, Solid, Vertex};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -169,29 +170,23 @@ impl Staging<'_> {
     }
 
     /// Adds a line, cut off where it goes below the ground.
-    pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, lines: &mut Vec<Line>) {
-        let ground = self.ground.as_slice();
-        if let Some([from, to]) = clipped_line([from, to], ground) {
-            lines.push(Line { from: self.draft.relative(from), to: self.draft.relative(to), kind, strength: 1.0 });
-        }
+    pub(super) fn line(&self, ends: [DVec3; 2], kind: LineKind, lines: &mut Vec<Line>) {
+        let left = clipped_line(ends, self.ground.as_slice());
+        lines.extend(left.map(|ends| self.draft.line(ends, kind, 1.0)));
     }
 
     /// The line in which a polygon meets the ground.
     fn ground_line(&self, polygon: &[DVec3], lines: &mut Vec<Line>) {
         let Some((normal, height)) = self.ground else { return };
         let above = |point: DVec3| normal.dot(point) - height;
-        let next = polygon.iter().cycle().skip(1);
-        let through: Vec<_> = polygon
-            .iter()
-            .zip(next)
+        let through: Vec<_> = around(polygon)
             .filter_map(|(&a, &b)| {
                 let (x, y) = (above(a), above(b));
                 ((x < 0.0) != (y < 0.0)).then(|| a.lerp(b, x / (x - y)))
             })
             .collect();
         if let [from, to] = through[..] {
-            let kind = LineKind::ObstacleContour;
-            lines.push(Line { from: self.draft.relative(from), to: self.draft.relative(to), kind, strength: 1.0 });
+            lines.push(self.draft.line([from, to], LineKind::ObstacleContour, 1.0));
         }
     }
 }
