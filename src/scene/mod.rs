@@ -38,6 +38,7 @@ mod summary;
 mod syntax;
 mod turning;
 mod typed;
+mod view;
 mod world;
 
 pub use crate::reading::captions::description;
@@ -62,7 +63,7 @@ pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 #[cfg(feature = "render")]
 pub(crate) use turning::brakes_rotation;
 
-use crate::look::{Subject, SubjectBody, SubjectRun, View};
+use crate::look::View;
 use crate::reading::words::{list, nearest, quoted};
 use crate::sim::{Body, Contacts, Dimension, Moment, Obstacle, State};
 use glam::DVec3;
@@ -162,19 +163,6 @@ impl SceneBody {
 /// A body with this name in messages.
 fn in_words(name: &str) -> String {
     if name.is_empty() { "the body".to_owned() } else { format!("the body {}", quoted(name)) }
-}
-
-/// Bodies and runs in their surroundings, as the view sees them.
-fn subject<'a>(bodies: &'a [SceneBody], runs: &'a [Run], gravity: DVec3, obstacles: &'a [Obstacle]) -> Subject<'a> {
-    let body = |one: &'a SceneBody| {
-        let SceneBody { name, body, initial, side, has_cells, .. } = one;
-        SubjectBody { name, body, initial, side: *side, has_cells: *has_cells }
-    };
-    let run = |one: &'a Run| {
-        let Run { name, of, bodies, initial, models, step, grips, .. } = one;
-        SubjectRun { name, step: *step, of, nodes: bodies.whole().len(), initial, models, grips }
-    };
-    Subject { bodies: bodies.iter().map(body).collect(), gravity, obstacles, runs: runs.iter().map(run).collect() }
 }
 
 impl Scene {

@@ -2,7 +2,7 @@
 
 use super::file::{ContactRule, MassDamping, SceneFile};
 use super::structure::Checked;
-use crate::look::TypedView;
+use super::view::TypedView;
 use crate::reading::collector::{Collector, PathPart, key_path};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};

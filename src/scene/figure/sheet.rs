@@ -3,8 +3,9 @@
 use super::file::{ColumnFile, RowFile, SheetFile};
 use super::resolve::{Scenes, share_lines};
 use super::{Column, Row, Sheet};
-use crate::look::{self, Plot, Subject};
+use crate::look::Plot;
 use crate::reading::collector::key_path;
+use crate::scene::view::{self, Subject};
 use crate::scene::{Scene, SceneError};
 use std::mem::take;
 
@@ -85,7 +86,7 @@ impl Scenes<'_, '_, '_> {
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
             let subjects: Vec<_> = scenes.iter().map(subject).collect();
-            let scales = look::colour(typed, &subjects, "sheet", report).unwrap_or_default();
+            let scales = view::colour(typed, &subjects, "sheet", report).unwrap_or_default();
             scenes.iter_mut().zip(scales).for_each(|(scene, scale)| scene.view.colour = Some(scale));
         }
         let SheetFile { charts, number, from, split, .. } = file;
@@ -157,7 +158,7 @@ impl Scenes<'_, '_, '_> {
 
 /// The scene's part of the input of views.
 fn subject(scene: &Scene) -> Subject<'_> {
-    crate::scene::subject(&scene.bodies, &scene.runs, scene.gravity, &scene.obstacles)
+    Subject { bodies: &scene.bodies, gravity: scene.gravity, obstacles: &scene.obstacles, runs: &scene.runs }
 }
 
 /// The last moment of a scene (s).

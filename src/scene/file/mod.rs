@@ -24,8 +24,9 @@ pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 pub(in crate::scene) use run::{ModelFile, RunFile, StatesFile};
 pub(in crate::scene) use time::{EndFile, StartFile, StepFile, TimeFile};
 
-use crate::look::{TypedView, View};
+use crate::look::View;
 pub use crate::reading::coordinates::Coordinates;
+use crate::scene::view::TypedView;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

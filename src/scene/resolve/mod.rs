@@ -31,7 +31,8 @@ use super::file::{BodyFile, Positive, SceneFile, TimeFile};
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
 use super::typed::typed;
-use super::{ALL_BODIES, Probe, Run, Scene, SceneBody, subject};
+use super::view::Subject;
+use super::{ALL_BODIES, Probe, Run, Scene, SceneBody};
 use crate::look::{self, FontFiles, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
@@ -234,11 +235,11 @@ impl<'a> Typed<'a> {
         }
     }
 
-    /// The view, which `look` resolves.
+    /// The view.
     fn view(&self, physics: &Physics, font: FontFiles, report: &mut Collector<'_>) -> Option<View> {
         let Physics { gravity, bodies, obstacles, runs, .. } = physics;
-        let runs = runs.as_deref().unwrap_or_default();
-        let around = subject(bodies.as_ref()?, runs, gravity.unwrap_or_default(), obstacles.as_ref()?);
+        let (runs, gravity) = (runs.as_deref().unwrap_or_default(), gravity.unwrap_or_default());
+        let around = Subject { bodies: bodies.as_ref()?, gravity, obstacles: obstacles.as_ref()?, runs };
         let view = View::read(&self.file.view, &around, font, report)?;
         let chosen: Vec<_> = self.file.run.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
         look::check_runs(&chosen, &view.look.palette(), report);

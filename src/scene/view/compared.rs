@@ -1,9 +1,10 @@
 //! Resolves ghosts and paths.
 
-use super::subject::{Subject, SubjectRun};
-use super::view::{Ghost, Traced};
+use super::subject::Subject;
+use crate::look::{Ghost, Traced};
 use crate::reading::collector::{Collector, PathPart};
 use crate::reading::words::{list, nearest, quoted, short};
+use crate::scene::Run;
 
 /// The name for a ghost of the rest shape.
 const REST: &str = "rest";
@@ -55,8 +56,8 @@ pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &mut Co
             && node as usize >= least
         {
             let last = least.saturating_sub(1);
-            let who = match scene.runs.iter().find(|run| run.nodes == least) {
-                Some(run) if least < most => format!("the run {}", quoted(run.name)),
+            let who = match scene.runs.iter().find(|run| run.bodies.whole().len() == least) {
+                Some(run) if least < most => format!("the run {}", quoted(&run.name)),
                 _ if scene.bodies.len() == 1 => "the body".to_owned(),
                 _ => "each run".to_owned(),
             };
@@ -76,7 +77,7 @@ fn unknown<T>(
     if scene.runs.is_empty() {
         return None;
     }
-    let known: Vec<&str> = scene.runs.iter().map(|run| run.name).chain(more.iter().copied()).collect();
+    let known: Vec<&str> = scene.runs.iter().map(|run| &*run.name).chain(more.iter().copied()).collect();
     let help = match nearest(name, &known) {
         Some(name) => format!("did you mean {}?", quoted(name)),
         None => format!("expected {}", list(&known, "or", quoted)),
@@ -86,24 +87,24 @@ fn unknown<T>(
 }
 
 /// Reports runs with different bodies.
-fn other_bodies(runs: [&SubjectRun<'_>; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
-    let [one, other] = runs.map(|run| quoted(run.name));
+fn other_bodies(runs: [&Run; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    let [one, other] = runs.map(|run| quoted(&run.name));
     let message = format!("{one} and {other} have different bodies, so their nodes cannot be compared");
     report.at(path, message, "give all runs of the scene the same bodies, or compare none".to_owned());
 }
 
 /// Whether two runs are simulated with different steps. A recording is compared with the moments nearest to its own.
-fn have_other_steps(one: &SubjectRun<'_>, other: &SubjectRun<'_>) -> bool {
+fn have_other_steps(one: &Run, other: &Run) -> bool {
     [one, other].iter().all(|run| !run.models.is_empty()) && one.step != other.step
 }
 
 /// Reports runs with different steps: their frames show different moments.
-fn other_steps([one, other]: [&SubjectRun<'_>; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
+fn other_steps([one, other]: [&Run; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let message = format!(
         "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",
-        quoted(one.name),
+        quoted(&one.name),
         short(one.step),
-        quoted(other.name),
+        quoted(&other.name),
         short(other.step)
     );
     report.at(path, message, "give both runs the same `step`".to_owned());

@@ -1,49 +1,19 @@
 //! The subject of a view: bodies, runs and their surroundings.
 
+use crate::scene::{Run, SceneBody};
 use crate::sim::geometry::{self, bounds};
 use crate::sim::model::ElasticModel;
-use crate::sim::{Body, Dimension, Field, Grip, Obstacle, State};
+use crate::sim::{Dimension, Field, Obstacle};
 use glam::DVec3;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// The data on which default values of a view depend.
-pub(crate) struct Subject<'a> {
+pub(in crate::scene) struct Subject<'a> {
     /// The bodies, all in the plane or all in space.
-    pub(crate) bodies: Vec<SubjectBody<'a>>,
-    pub(crate) gravity: DVec3,
-    pub(crate) obstacles: &'a [Obstacle],
-    pub(crate) runs: Vec<SubjectRun<'a>>,
-}
-
-/// A body.
-pub(crate) struct SubjectBody<'a> {
-    /// Its name; empty if it is the only one and has none.
-    pub(crate) name: &'a str,
-    pub(crate) body: &'a Body,
-    /// The initial state of all bodies.
-    pub(crate) initial: &'a State,
-    /// Mean length of its elements' edges (m).
-    pub(crate) side: f64,
-    /// Whether `side` is the side of a lattice's cells.
-    pub(crate) has_cells: bool,
-}
-
-/// A run.
-pub(crate) struct SubjectRun<'a> {
-    pub(crate) name: &'a str,
-    /// Its time step (s).
-    pub(crate) step: f64,
-    /// The places of its bodies.
-    pub(crate) of: &'a [usize],
-    /// The number of nodes of all its bodies.
-    pub(crate) nodes: usize,
-    /// Where it starts.
-    pub(crate) initial: &'a State,
-    /// The model of each body.
-    pub(crate) models: &'a [Arc<dyn ElasticModel>],
-    /// Nodes that are held or dragged.
-    pub(crate) grips: &'a [Grip],
+    pub(in crate::scene) bodies: &'a [SceneBody],
+    pub(in crate::scene) gravity: DVec3,
+    pub(in crate::scene) obstacles: &'a [Obstacle],
+    pub(in crate::scene) runs: &'a [Run],
 }
 
 impl<'a> Subject<'a> {
@@ -66,7 +36,7 @@ impl<'a> Subject<'a> {
 
     /// The corners of the box around all bodies at the start (m).
     pub(super) fn start(&self) -> (DVec3, DVec3) {
-        let starts = self.bodies.iter().map(|one| one.initial).chain(self.runs.iter().map(|run| run.initial));
+        let starts = self.bodies.iter().map(|one| &one.initial).chain(self.runs.iter().map(|run| &run.initial));
         let boxes = starts.map(|start| bounds(&start.position));
         let around = boxes.reduce(|(low, high), (from, to)| (low.min(from), high.max(to)));
         around.expect("at least one body")
@@ -81,14 +51,15 @@ impl<'a> Subject<'a> {
     pub(super) fn nodes(&self) -> Vec<usize> {
         match self.runs.is_empty() {
             true => vec![self.bodies.iter().map(|one| one.body.len()).sum()],
-            false => self.runs.iter().map(|run| run.nodes).collect(),
+            false => self.runs.iter().map(|run| run.bodies.whole().len()).collect(),
         }
     }
 
     /// Each model of each run with its body.
-    fn parts(&self) -> impl Iterator<Item = (&'a dyn ElasticModel, &SubjectBody<'a>)> {
-        let of_run = |run: &SubjectRun<'a>| run.models.iter().zip(run.of);
-        self.runs.iter().flat_map(of_run).map(|(model, &body)| (&**model, &self.bodies[body]))
+    fn parts(&self) -> impl Iterator<Item = (&'a dyn ElasticModel, &'a SceneBody)> {
+        let Self { bodies, runs, .. } = *self;
+        let of_run = |run: &'a Run| run.models.iter().zip(&run.of);
+        runs.iter().flat_map(of_run).map(|(model, &body)| (&**model, &bodies[body]))
     }
 
     /// The largest expected value of a field in the scene.
@@ -100,14 +71,14 @@ impl<'a> Subject<'a> {
             Field::Strain => LARGE,
             Field::Displacement => {
                 // From the start of a path: half of its longest way, there and back.
-                let grips = self.runs.iter().flat_map(|run| run.grips);
+                let grips = self.runs.iter().flat_map(|run| &run.grips);
                 let ways = grips.map(|grip| 0.5 * grip.motion.longest_way(self.side())).filter(|way| way.is_finite());
                 LARGE * most(&mut self.bodies.iter().map(|one| one.side).chain(ways))
             }
             Field::Distance => LARGE * self.extent(),
             Field::ElasticEnergy => {
-                let energy = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {
-                    0.5 * model.properties(of.body).stiffness * (LARGE * of.side) * (LARGE * of.side)
+                let energy = |(model, of): (&dyn ElasticModel, &SceneBody)| {
+                    0.5 * model.properties(&of.body).stiffness * (LARGE * of.side) * (LARGE * of.side)
                 };
                 most(&mut self.parts().map(energy))
             }
@@ -120,8 +91,8 @@ impl<'a> Subject<'a> {
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(self.side()));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
                 // Bodies that nothing else moves oscillate at their own frequencies.
-                let swing = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {
-                    LARGE * of.side * TAU / model.properties(of.body).shortest_period(of.body)
+                let swing = |(model, of): (&dyn ElasticModel, &SceneBody)| {
+                    LARGE * of.side * TAU / model.properties(&of.body).shortest_period(&of.body)
                 };
                 if fastest > 0.0 { fastest } else { most(&mut self.parts().map(swing)) }
             }

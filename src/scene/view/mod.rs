@@ -1,24 +1,24 @@
 //! Reads a `[view]` table into the view of a body, its runs and its surroundings.
 
-use super::camera::CameraFile;
-use super::compared;
-use super::file::{ColourFile, PanelsFile};
-use super::font::FontFiles;
-use super::palette::Palette;
-use super::print::{SizeFile, TextScaleFile, unit};
-use super::subject::Subject;
-use super::typed::TypedColour;
-use super::view::{ColourScale, View, Visible};
+mod camera;
+mod compared;
+mod subject;
+
+use crate::look::file::{ColourFile, PanelsFile};
+use crate::look::print::{SizeFile, TextScaleFile, unit};
+use crate::look::typed::TypedColour;
+use crate::look::{CameraFile, ColourScale, FontFiles, Palette, View, Visible};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::sim::Field;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
+pub(super) use subject::Subject;
 
 /// The shortest side of a picture (px).
 const LEAST_SIDE: u32 = 16;
 
 /// A `[view]` table as typed, of the right structure.
-pub(crate) type TypedView = Map<String, Json>;
+pub(super) type TypedView = Map<String, Json>;
 
 /// A value as typed, if there is one.
 fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &mut Collector<'_>) -> Option<T> {
@@ -36,7 +36,7 @@ fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report:
 
 impl View {
     /// The view of a scene: typed values, and defaults that depend on the scene. `None` after a mistake.
-    pub(crate) fn read(
+    pub(super) fn read(
         typed: &TypedView,
         scene: &Subject<'_>,
         font: FontFiles,
@@ -97,7 +97,7 @@ impl View {
 const NARROWEST: f64 = 1e-9;
 
 /// The colours of a field in each of some scenes, typed in a table. A range that is not typed follows from the scenes.
-pub(crate) fn colour(
+pub(super) fn colour(
     typed: &ColourFile,
     scenes: &[Subject<'_>],
     table: &'static str,
@@ -107,7 +107,7 @@ pub(crate) fn colour(
         Some(range) => rising(range, &key_path![table, "colour", "range"], report)?,
         None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
-    let mut runs = scenes.iter().flat_map(|scene| &scene.runs).peekable();
+    let mut runs = scenes.iter().flat_map(|scene| scene.runs).peekable();
     if typed.by == Field::ElasticEnergy && runs.peek().is_some() && runs.all(|run| run.models.is_empty()) {
         let message = format!("`{table}.colour.by` is \"elastic-energy\", which no run has");
         let help = "recordings have none; colour by another field, such as \"strain\"".to_owned();
