@@ -59,7 +59,7 @@ impl Obstacle {
     /// Unit normal and distance from the origin (m) of a floor at a time (s); `None` for other obstacles.
     pub fn floor(&self, time: f64) -> Option<(DVec3, f64)> {
         let Shape::Floor { normal, height } = self.shape else { return None };
-        if self.motion == Motion::Still {
+        if self.is_still() {
             return Some((normal, height));
         }
         let (pose, pivot) = (self.pose(time), self.pivot);
@@ -82,14 +82,9 @@ impl Obstacle {
 
     /// The obstacle at the end of a step of `step` (s) that ends at `time` (s).
     pub fn at(&self, time: f64, step: f64) -> Placed<'_> {
-        let moving = (self.motion != Motion::Still).then(|| Moving {
-            pivot: self.pivot,
-            now: self.pose(time),
-            // At the start nothing has moved yet.
-            before: self.pose((time - step).max(0.0)),
-            step,
-        });
-        Placed { obstacle: self, moving, step }
+        // At the start nothing has moved yet.
+        let poses = [(time - step).max(0.0), time];
+        Placed { obstacle: self, moving: (!self.is_still()).then(|| poses.map(|time| self.pose(time))), step }
     }
 }
 
@@ -97,17 +92,9 @@ impl Obstacle {
 #[derive(Clone, Debug)]
 pub struct Placed<'a> {
     obstacle: &'a Obstacle,
-    moving: Option<Moving>,
+    /// Its displacements at the start and at the end of the step, if it moves.
+    moving: Option<[Pose; 2]>,
     /// The step (s).
-    step: f64,
-}
-
-/// The motion of an obstacle in a step.
-#[derive(Clone, Debug)]
-struct Moving {
-    pivot: DVec3,
-    now: Pose,
-    before: Pose,
     step: f64,
 }
 
@@ -123,28 +110,28 @@ impl Placed<'_> {
     /// Like [`Self::contact`], but also for points on the surface, to round-off.
     fn surface(&self, point: DVec3) -> Option<(Contact, DVec3)> {
         let (shape, farthest) = (&self.obstacle.shape, point.abs().max_element());
-        let Some(moving) = &self.moving else {
+        let (pivot, Some([before, now])) = (self.obstacle.pivot, &self.moving) else {
             let contact = shape.surface(point);
             return (contact.depth > -shape.round_off(farthest)).then_some((contact, DVec3::ZERO));
         };
-        let own = moving.now.undo(moving.pivot, point);
+        let own = now.undo(pivot, point);
         let Contact { depth, normal } = shape.surface(own);
         // Both positions are rounded, and so is the displacement between them.
-        let farthest = farthest + own.abs().max_element() + moving.pivot.abs().max_element();
+        let farthest = farthest + own.abs().max_element() + pivot.abs().max_element();
         if depth <= -shape.round_off(farthest) {
             return None;
         }
-        let velocity = (point - moving.before.apply(moving.pivot, own)) / moving.step;
-        Some((Contact { depth, normal: moving.now.rotation * normal }, velocity))
+        let velocity = (point - before.apply(pivot, own)) / self.step;
+        Some((Contact { depth, normal: now.rotation * normal }, velocity))
     }
 
     /// A region that contains all points of contact, with a margin (m) for round-off.
     pub(crate) fn bound(&self, margin: f64) -> Bound {
-        let now = |point: DVec3| self.moving.as_ref().map_or(point, |moving| moving.now.apply(moving.pivot, point));
-        let middle = now(self.obstacle.shape.middle());
+        let (middle, now) = (self.obstacle.shape.middle(), self.moving.as_ref().map(|[_, now]| now));
+        let middle = now.map_or(middle, |now| now.apply(self.obstacle.pivot, middle));
         match self.obstacle.shape {
             Shape::Floor { normal, .. } | Shape::Plate { normal, .. } => {
-                let normal = self.moving.as_ref().map_or(normal, |moving| moving.now.rotation * normal);
+                let normal = now.map_or(normal, |now| now.rotation * normal);
                 Bound::HalfSpace { normal, height: normal.dot(middle) + margin }
             }
             // In the plane obstacles are infinite across it, but all nodes have z = 0.
@@ -213,7 +200,7 @@ impl Placed<'_> {
         let approach = -normal.dot(relative);
         if approach > 0.0 {
             let pressing = -normal.dot(acceleration);
-            let Bounce { height, speed } = Bounce::new(restitution, depth, approach, pressing);
+            let [height, speed] = bounce(restitution, depth, approach, pressing);
             *position += normal * (depth + height);
             let change = approach + speed;
             let slip = relative + normal * approach;
@@ -231,7 +218,7 @@ impl Placed<'_> {
     }
 }
 
-/// The time (s) since a node touched an obstacle, for [`FrictionOf::Path`], from the arguments of [`Bounce::new`].
+/// The time (s) since a node touched an obstacle, for [`FrictionOf::Path`], from the arguments of [`bounce`].
 ///
 /// It is counted from the height `e d` to which the node rebounds: `(1 + e) d/v`, or with an acceleration, which it has had since it
 /// met the surface with the speed `√(v² − 2 a d)`, `(1 + e)` times `2 d` over the sum of both speeds. A node that rests on a surface
@@ -241,34 +228,22 @@ fn touching(e: f64, depth: f64, approach: f64, pressing: f64) -> f64 {
     (1.0 + e) * (2.0 * depth.max(0.0) / (approach + met))
 }
 
-/// Height and speed of an approaching node after its rebound.
-struct Bounce {
-    /// Above the surface (m).
-    height: f64,
-    /// Away from the surface (m/s).
-    speed: f64,
-}
-
-impl Bounce {
-    /// `e` is the restitution coefficient, `depth` (m) and `approach` (m/s) the depth and speed of the node, and
-    /// `pressing` its acceleration into the surface in the step (m/s²).
-    ///
-    /// At constant velocity: height `e d`, speed `e v`. An acceleration `a` has increased the speed on the way from the
-    /// surface to depth `d`, and reduces it on the way up: the node hit the surface with `v² − 2 a d`, left it with
-    /// `e²` of that, and at height `e d` it has `2 a e d` less. A node that does not reach that height is placed at its
-    /// highest point. So with `e = 1` the energy under a constant force is conserved for any step; the paper's `−e v`
-    /// alone would add `m a v ΔT` in each bounce.
-    fn new(e: f64, depth: f64, approach: f64, pressing: f64) -> Self {
-        if pressing == 0.0 {
-            return Self { height: e * depth, speed: e * approach };
-        }
-        let hit = (approach * approach - 2.0 * pressing * depth).max(0.0);
-        let left = e * e * hit;
-        let speed = left - 2.0 * pressing * (e * depth);
-        if speed >= 0.0 {
-            Self { height: e * depth, speed: speed.sqrt() }
-        } else {
-            Self { height: left / (2.0 * pressing), speed: 0.0 }
-        }
+/// Height above the surface (m) and speed away from it (m/s) of an approaching node after its rebound.
+///
+/// `e` is the restitution coefficient, `depth` (m) and `approach` (m/s) the depth and speed of the node, and
+/// `pressing` its acceleration into the surface in the step (m/s²).
+///
+/// At constant velocity: height `e d`, speed `e v`. An acceleration `a` has increased the speed on the way from the
+/// surface to depth `d`, and reduces it on the way up: the node hit the surface with `v² − 2 a d`, left it with
+/// `e²` of that, and at height `e d` it has `2 a e d` less. A node that does not reach that height is placed at its
+/// highest point. So with `e = 1` the energy under a constant force is conserved for any step; the paper's `−e v`
+/// alone would add `m a v ΔT` in each bounce.
+fn bounce(e: f64, depth: f64, approach: f64, pressing: f64) -> [f64; 2] {
+    if pressing == 0.0 {
+        return [e * depth, e * approach];
     }
+    let hit = (approach * approach - 2.0 * pressing * depth).max(0.0);
+    let left = e * e * hit;
+    let speed = left - 2.0 * pressing * (e * depth);
+    if speed >= 0.0 { [e * depth, speed.sqrt()] } else { [left / (2.0 * pressing), 0.0] }
 }
