@@ -69,7 +69,9 @@ impl System {
     /// Makes contact of surfaces anew, as the surroundings say.
     pub(super) fn renew_contact(&mut self) {
         let Surroundings { contacts, obstacles, .. } = &self.surroundings;
-        self.contact = contacts.as_ref().and_then(|contacts| Stage::new(contacts, &self.parts, obstacles));
+        let bodies: Vec<_> = self.parts.iter().map(|part| Arc::clone(&part.body)).collect();
+        let stage = contacts.as_ref().map(|contacts| Stage::new(contacts, &bodies, obstacles));
+        self.contact = stage.filter(Stage::can_meet);
     }
 
     /// Counts the work of forces from outside from a state on, after some work (J) on each part.
@@ -243,14 +245,14 @@ impl System {
             (position[node], velocity[node]) = (to, speed);
         }
         let Some(stage) = &self.contact else { return };
-        let some = |all: &[DVec3]| stage.nodes().iter().map(|&node| all[node as usize]).collect();
+        let some = |all: &[DVec3]| stage.nodes.iter().map(|&node| all[node as usize]).collect();
         let [start, mut end] = [[&before.position, &before.velocity], [&*position, &*velocity]]
             .map(|[at, speed]| State::new(some(at), some(speed)));
         let (changed, impulses, before) = (&mut Vec::new(), self.impulses.as_ref(), start.nodes());
         let State { position: places, velocity: speeds, .. } = &mut end;
         self.meet(End { interval, before, position: places, velocity: speeds, timing, changed, impulses }, constraints);
         for number in changed.iter().map(|&number| number as usize) {
-            let node = stage.nodes()[number] as usize;
+            let node = stage.nodes[number] as usize;
             (position[node], velocity[node]) = (end.position[number], end.velocity[number]);
         }
     }

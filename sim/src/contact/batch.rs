@@ -1,7 +1,7 @@
 //! The closest points of many candidates of contact at once, in lanes.
 
-use super::closest::{self, Nearest, On};
-use super::lanewise::{self, INSIDE, Vector};
+use super::closest;
+use super::lanewise::{self, Vector};
 use super::surface::Placed;
 use crate::lanes::{Lanes, MOST, Work};
 use glam::DVec3;
@@ -23,11 +23,7 @@ pub(super) struct Found {
 impl Found {
     /// That of a point and a segment.
     pub(super) fn on_segment(point: DVec3, ends: [DVec3; 2]) -> Self {
-        let Nearest { shares, on } = closest::of_segment(point, ends);
-        let part = match on {
-            On::Corner(corner) => corner as f64,
-            On::Side(_) | On::Inside => INSIDE,
-        };
+        let (shares, part) = closest::of_segment(point, ends);
         let way = point - (ends[0] * shares[0] + ends[1] * shares[1]);
         Self { shares, part, way, distance: way.length() }
     }
@@ -131,7 +127,7 @@ mod tests {
         let corner = |at: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(at >> axis & 1)));
         let nodes: Vec<u32> = (0..8).collect();
         let cube = Body::builder((0..8).map(corner).collect()).elements([&nodes[..]].into_iter().collect());
-        let surface = Surface::of(&cube.build().expect("a cube"), 0);
+        let surface = Surface::of(&cube.build().expect("a cube"));
         let places = places(&surface);
         let of = places.each_ref().map(|at| Placed { surface: &surface, at });
         let all = |first: usize, second: usize| -> Vec<[u32; 2]> {
@@ -144,8 +140,8 @@ mod tests {
             set.run(PointsAndFacets { of, features: &features, found: &mut found });
             for (found, &[point, facet]) in found.iter().zip(&features) {
                 let corners = surface.facets[facet as usize].corners.map(|corner| of[1].point(corner));
-                let alone = closest::of_triangle(of[0].point(point), corners);
-                assert_eq!((bits(&found.shares), On::of(found.part)), (bits(&alone.shares), alone.on));
+                let (shares, part) = closest::of_triangle(of[0].point(point), corners);
+                assert_eq!((bits(&found.shares), found.part), (bits(&shares), part));
                 assert_eq!(bits(&[found.way.length()]), bits(&[found.distance]));
             }
             let features = all(edges, edges);

@@ -2,18 +2,9 @@
 //!
 //! C. Ericson, Real-Time Collision Detection (2005), sections 5.1.2, 5.1.5 and 5.1.9.
 
-use super::lanewise::{along_segments, in_triangle};
+use super::lanewise::{INSIDE, along_segments, in_triangle};
 use crate::lanes::{Lanes, One};
 use glam::DVec3;
-
-/// The closest point of a segment or triangle to a point, as shares of its corners.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Nearest {
-    /// The weight of each corner, with the sum 1.
-    pub(super) shares: [f64; 3],
-    /// Where it is.
-    pub(super) on: On,
-}
 
 /// The part of a facet on which a closest point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,25 +28,25 @@ impl On {
     }
 }
 
-/// The closest point of a segment.
-pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> Nearest {
+/// The closest point of a segment: the shares of its corners, and the number of the part on which it lies.
+pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> ([f64; 3], f64) {
     let along = b - a;
     let (way, whole) = (along.dot(point - a), along.length_squared());
     if way <= 0.0 || whole == 0.0 {
-        return Nearest { shares: [1.0, 0.0, 0.0], on: On::Corner(0) };
+        return ([1.0, 0.0, 0.0], 0.0);
     }
     if way >= whole {
-        return Nearest { shares: [0.0, 1.0, 0.0], on: On::Corner(1) };
+        return ([0.0, 1.0, 0.0], 1.0);
     }
     let share = way / whole;
-    Nearest { shares: [1.0 - share, share, 0.0], on: On::Inside }
+    ([1.0 - share, share, 0.0], INSIDE)
 }
 
-/// The closest point of a triangle.
-pub(super) fn of_triangle(point: DVec3, corners: [DVec3; 3]) -> Nearest {
+/// The same of a triangle.
+pub(super) fn of_triangle(point: DVec3, corners: [DVec3; 3]) -> ([f64; 3], f64) {
     let lanes = |at: DVec3| at.to_array().map(One::splat);
     let (shares, part) = in_triangle(lanes(point), corners.map(lanes));
-    Nearest { shares: shares.map(|share| share.to_array()[0]), on: On::of(part.to_array()[0]) }
+    (shares.map(|share| share.to_array()[0]), part.to_array()[0])
 }
 
 /// The closest points of two segments: how far along each they are, from 0 to 1.
@@ -92,20 +83,20 @@ mod tests {
         let mut seen = [0; 3];
         for _ in 0..2000 {
             let (point, corners) = (next() * 1.5, [next(), next(), next()]);
-            let nearest = of_triangle(point, corners);
-            let at = mix(nearest.shares, corners);
+            let (shares, part) = of_triangle(point, corners);
+            let (at, on) = (mix(shares, corners), On::of(part));
             let distance = at.distance(point);
             for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {
                 let [v, w] = [i, j].map(|k| f64::from(k) / 20.0);
                 assert!(distance <= mix([1.0 - v - w, v, w], corners).distance(point) + 1e-13);
             }
             let across = |along: DVec3| assert!((point - at).dot(along).abs() < 1e-12 * along.length());
-            match nearest.on {
+            match on {
                 On::Inside => [1, 2].iter().for_each(|&to| across(corners[to] - corners[0])),
                 On::Side(side) => across(corners[(side + 1) % 3] - corners[side]),
                 On::Corner(corner) => assert_eq!(at, corners[corner]),
             }
-            seen[match nearest.on {
+            seen[match on {
                 On::Inside => 0,
                 On::Side(_) => 1,
                 On::Corner(_) => 2,

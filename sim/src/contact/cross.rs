@@ -90,8 +90,8 @@ impl Corners {
     pub(super) fn distance_to(&self, point: DVec3) -> f64 {
         let [a, b, _] = self.at;
         let shares = match self.count {
-            3 => closest::of_triangle(point, self.at).shares,
-            2 => closest::of_segment(point, [a, b]).shares,
+            3 => closest::of_triangle(point, self.at).0,
+            2 => closest::of_segment(point, [a, b]).0,
             _ => [1.0, 0.0, 0.0],
         };
         self.at.iter().zip(shares).map(|(&corner, share)| corner * share).sum::<DVec3>().distance(point)
@@ -166,7 +166,7 @@ mod tests {
 
     /// How many facets of two blocks cross, the second of which is scaled and moved.
     fn count(dimension: Dimension, scale: DVec3, by: DVec3) -> usize {
-        let (body, surface) = (block(dimension), Surface::of(&block(dimension), 0));
+        let (body, surface) = (block(dimension), Surface::of(&block(dimension)));
         let at: Vec<_> = (0..surface.points.len()).map(|point| surface.points.place(point, &body.rest)).collect();
         let moved: Vec<_> = at.iter().map(|&point| point * scale + by).collect();
         let other = surface.clone();
@@ -206,7 +206,7 @@ mod tests {
         let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         let body =
             Body::builder(rest).elements([&[0, 1, 2, 3][..]].into_iter().collect()).build().expect("a tetrahedron");
-        let surface = Surface::of(&body, 0);
+        let surface = Surface::of(&body);
         let at = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.2, 0.2, -0.5)];
         let placed = Placed { surface: &surface, at: &at };
         assert!(crossings([placed; 2]).is_empty());

@@ -1,7 +1,7 @@
 //! What contact sees of the end of a step.
 
 use super::Impulses;
-use super::rule::{Motion, Moved, Timing};
+use super::rule::{Motion, Timing};
 use crate::motion::Interval;
 use crate::state::Nodes;
 use glam::DVec3;
@@ -30,12 +30,16 @@ pub(super) struct Ends {
     pub(super) motion: Vec<Motion>,
     /// The nodes that grips hold, in rising order, each with its grip.
     pub(super) held: Vec<[usize; 2]>,
+    /// ΔT (s).
+    pub(super) step: f64,
+    pub(super) timing: Timing,
 }
 
 impl Ends {
     /// Takes the motion of nodes, and of points of obstacles, whose positions at the start and at the end are known.
     pub(super) fn take(&mut self, inverse_mass: &[f64], end: &End<'_>) {
-        let Self { start, position, motion, held } = self;
+        let Self { start, position, motion, held, step, timing } = self;
+        (*step, *timing) = (end.interval.step, end.timing);
         motion.clear();
         let velocities = end.before.velocity.iter().zip(&*end.velocity);
         motion.extend(velocities.zip(inverse_mass).map(|((&before, &velocity), &inverse_mass)| {
@@ -43,7 +47,7 @@ impl Ends {
             Motion { velocity, slowed, inverse_mass, is_changed: false }
         }));
         let points = start.iter().zip(&*position).skip(inverse_mass.len());
-        motion.extend(points.map(|(&from, &to)| Motion::held((to - from) / end.interval.step)));
+        motion.extend(points.map(|(&from, &to)| Motion::held((to - from) / *step)));
         held.sort_unstable();
         held.iter().for_each(|&[node, _]| motion[node].inverse_mass = 0.0);
     }
@@ -54,12 +58,6 @@ impl Ends {
         {
             motion.slowed = before - motion.velocity;
         }
-    }
-
-    /// What contact changes, and the nodes that grips hold.
-    pub(super) fn moved(&mut self, end: &End<'_>) -> (Moved<'_>, &[[usize; 2]]) {
-        let Self { position, motion, held, .. } = self;
-        (Moved { position, motion, step: end.interval.step, timing: end.timing }, held)
     }
 
     /// Writes the nodes that contact has changed.

@@ -6,8 +6,8 @@ use glam::DVec3;
 /// A box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
-    low: DVec3,
-    high: DVec3,
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
 }
 
 impl Extent {
@@ -59,14 +59,6 @@ impl Extent {
     /// The greatest coordinate (m).
     pub(super) fn farthest(&self) -> f64 {
         self.low.abs().max(self.high.abs()).max_element()
-    }
-
-    pub(super) fn begins(&self) -> f64 {
-        self.low.x
-    }
-
-    pub(super) fn ends(&self) -> f64 {
-        self.high.x
     }
 }
 

@@ -3,13 +3,15 @@
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
 use super::end::{End, Ends};
-use super::places::{ContactPoint, SLACK};
+use super::points::{ContactPoint, SLACK};
 use super::rule::{Law, Motion, Term, Touch};
 use super::surface::Surface;
-use super::{Obstacle, Side, Source};
+use super::touches::Touches;
+use super::{Obstacle, Side};
+use crate::body::Body;
 use crate::motion::Interval;
-use crate::part::Part;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A body and a half-space.
 #[derive(Clone, Debug)]
@@ -22,6 +24,8 @@ pub(super) struct Ground {
     law: Law,
     /// What is known of its points. It only saves work.
     known: Near,
+    /// What touches in a step.
+    touches: Touches,
 }
 
 /// Points that were near a plane, with the heights of all nodes of the surface then (m); without heights nothing
@@ -53,7 +57,14 @@ impl Ground {
         obstacle.half_space(0.0)?;
         let &Obstacle { restitution, friction, .. } = obstacle;
         let law = Law { gap: surface.thickness, restitution, friction };
-        Some(Self { body, number, obstacle: obstacle.clone(), law, known: Near::default() })
+        Some(Self {
+            body,
+            number,
+            obstacle: obstacle.clone(),
+            law,
+            known: Near::default(),
+            touches: Touches::default(),
+        })
     }
 
     fn plane(&self, time: f64) -> Plane {
@@ -94,11 +105,19 @@ impl Ground {
         heights.extend(nodes.iter().map(|&node| height(start, node)));
     }
 
-    /// Adds the points that come nearer to the plane than the distance that is kept.
-    fn look(&mut self, surface: &Surface, [start, end]: [&[DVec3]; 2], interval: Interval, touches: &mut Touches) {
+    /// Finds the points that come nearer to the plane than the distance that is kept. Their feet are added to `feet`, with their motions.
+    fn look(
+        &mut self,
+        surface: &Surface,
+        [start, end]: [&[DVec3]; 2],
+        interval: Interval,
+        feet: &mut Vec<(DVec3, Motion)>,
+    ) {
         let plane = self.plane(interval.begin);
         let [from, to] = [interval.begin, interval.end].map(|time| self.obstacle.pose(time));
         self.list(surface, [start, end], plane);
+        self.touches.clear();
+        let Touches { all, terms } = &mut self.touches;
         for &point in &self.known.points {
             let (nodes, weights) = surface.points.of(point as usize);
             let here = surface.points.place(point as usize, start);
@@ -111,47 +130,33 @@ impl Ground {
             if plane.normal.dot(there - moved) >= self.law.gap + reserve {
                 continue;
             }
-            let first = touches.terms.len() as u32;
+            let first = terms.len() as u32;
             let own = nodes.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-            touches.terms.extend(own.map(|(&node, &weight)| Term { node, weight }));
-            let node = (end.len() + touches.feet.len()) as u32;
-            touches.terms.push(Term { node, weight: -1.0 });
-            touches.feet.push((moved, Motion::held((moved - foot) / interval.step)));
-            let terms = [first, touches.terms.len() as u32];
-            touches.all.push((
-                [self.number, self.body],
-                self.law,
-                Touch { normal: plane.normal, distance, is_whole: true, drag: DVec3::ZERO, terms },
-            ));
+            terms.extend(own.map(|(&node, &weight)| Term { node, weight }));
+            terms.push(Term { node: (end.len() + feet.len()) as u32, weight: -1.0 });
+            feet.push((moved, Motion::held((moved - foot) / interval.step)));
+            let terms = [first, terms.len() as u32];
+            all.push(Touch { normal: plane.normal, distance, is_whole: true, drag: DVec3::ZERO, terms });
         }
     }
 }
 
-/// All bodies with half-spaces that they may meet, and what touches in a step.
+/// All bodies with half-spaces that they may meet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grounds {
     all: Vec<Ground>,
-    touches: Touches,
-}
-
-/// What touches half-spaces in a step.
-#[derive(Clone, Debug, Default)]
-struct Touches {
-    /// With the numbers of the obstacle and of the body.
-    all: Vec<([usize; 2], Law, Touch)>,
-    terms: Vec<Term>,
-    /// The feet of the points at the end of the step (m).
+    /// The feet of the points that touch, at the end of a step (m).
     feet: Vec<(DVec3, Motion)>,
 }
 
 impl Grounds {
     /// The half-spaces that bodies with a carried surface meet.
-    pub(super) fn new(parts: &[Part], surfaces: &[Surface], obstacles: &[Obstacle]) -> Self {
-        let carried = parts.iter().zip(surfaces).enumerate().filter(|(_, (part, _))| part.body.meets_by_surface());
+    pub(super) fn new(bodies: &[Arc<Body>], surfaces: &[Surface], obstacles: &[Obstacle]) -> Self {
+        let carried = bodies.iter().zip(surfaces).enumerate().filter(|(_, (body, _))| body.meets_by_surface());
         let all = carried.flat_map(|(body, (_, surface))| {
             obstacles.iter().enumerate().filter_map(move |obstacle| Ground::new(body, surface, obstacle))
         });
-        Self { all: all.collect(), touches: Touches::default() }
+        Self { all: all.collect(), feet: Vec::new() }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -176,30 +181,15 @@ impl Grounds {
 
     /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points.
     pub(super) fn resolve(&mut self, surfaces: &[Surface], end: &End<'_>, ends: &mut Ends) {
-        let Self { all, touches } = self;
-        touches.all.clear();
-        touches.terms.clear();
-        touches.feet.clear();
+        let Self { all, feet } = self;
+        feet.clear();
         let places = [&ends.start[..], &ends.position];
-        all.iter_mut().for_each(|ground| ground.look(&surfaces[ground.body], places, end.interval, touches));
+        all.iter_mut().for_each(|ground| ground.look(&surfaces[ground.body], places, end.interval, feet));
         let count = ends.position.len();
-        ends.position.extend(touches.feet.iter().map(|(foot, _)| foot));
-        ends.motion.extend(touches.feet.iter().map(|(_, motion)| motion));
-        let (mut nodes, held) = ends.moved(end);
-        for &([obstacle, body], law, ref touch) in &touches.all {
-            let [first, last] = touch.terms.map(|at| at as usize);
-            let terms = &touches.terms[first..last];
-            match end.impulses {
-                None => drop(nodes.resolve(law, touch, terms)),
-                Some(impulses) => {
-                    let told = nodes.resolve_and_tell(law, touch, terms, count as u32);
-                    let Some(([on, _], impulse)) = told else { continue };
-                    impulses.feel_surface(end.interval.end, Source::Obstacle(obstacle), body, on);
-                    for (grip, _, changes) in nodes.holding(held, terms, impulse) {
-                        impulses.feel_surface(end.interval.end, Source::Grip(grip), body, changes);
-                    }
-                }
-            }
+        ends.position.extend(feet.iter().map(|(foot, _)| foot));
+        ends.motion.extend(feet.iter().map(|(_, motion)| motion));
+        for Ground { body, number, law, touches, .. } in all {
+            ends.push(touches, *law, [Side::Body(*body), Side::Obstacle(*number)], count as u32, end);
         }
         ends.position.truncate(count);
         ends.motion.truncate(count);

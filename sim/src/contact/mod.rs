@@ -20,7 +20,6 @@ mod near;
 mod obstacle;
 mod overlap;
 mod pair;
-mod places;
 mod points;
 #[cfg(test)]
 mod queries;
@@ -42,7 +41,7 @@ pub use impulses::{Reaction, Source};
 pub use obstacle::ground;
 pub use obstacle::{FrictionOf, Obstacle, Placed};
 pub use overlap::{Overlap, Surfaces};
-pub use places::ContactPoint;
+pub use points::ContactPoint;
 pub(crate) use rule::Timing;
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;

@@ -19,14 +19,14 @@ impl Stage {
         let margin = (0.1 * size).max(16.0 * ahead);
         let reach = margin + self.widest_gap();
         let mut order: Vec<usize> = (0..extents.len()).collect();
-        order.sort_by(|&one, &other| extents[one].begins().total_cmp(&extents[other].begins()));
+        order.sort_by(|&one, &other| extents[one].low.x.total_cmp(&extents[other].low.x));
         let mut chosen = Vec::new();
         for (at, &one) in order.iter().enumerate() {
             if one < self.bodies {
                 chosen.push([one, one]);
             }
-            let end = extents[one].ends() + reach;
-            let beside = order[at + 1..].iter().take_while(|&&other| extents[other].begins() <= end);
+            let end = extents[one].high.x + reach;
+            let beside = order[at + 1..].iter().take_while(|&&other| extents[other].low.x <= end);
             let near = beside.filter(|&&other| extents[one].distance(&extents[other]) <= reach);
             chosen.extend(near.map(|&other| [one.min(other), one.max(other)]));
         }
@@ -65,15 +65,14 @@ impl Stage {
         let bearable = |way: f64, own: f64| (way / (most as f64 * interval.step) - own) / (2.0 * THROWN * lever);
         order.clear();
         order.extend(0..extents.len());
-        order.sort_unstable_by(|&one, &other| {
-            extents[one].begins().total_cmp(&extents[other].begins()).then(one.cmp(&other))
-        });
+        order
+            .sort_unstable_by(|&one, &other| extents[one].low.x.total_cmp(&extents[other].low.x).then(one.cmp(&other)));
         let clear = self.grounds.lock().unwrap_or_else(PoisonError::into_inner).clear(&self.surfaces, places)?;
         let mut speed = bearable(clear, 0.0);
         for (at, &one) in order.iter().enumerate() {
             for &other in &order[at + 1..] {
                 // No later one is nearer.
-                let least = extents[other].begins() - extents[one].ends() - widest;
+                let least = extents[other].low.x - extents[one].high.x - widest;
                 if speed <= 1.1 * fastest || bearable(least, quickest) >= speed {
                     break;
                 }

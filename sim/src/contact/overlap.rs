@@ -4,7 +4,8 @@ use super::cross::{Corners, are_joined, near_facets};
 use super::extent::Extent;
 use super::inside::inside;
 use super::shape::ROUND_OFF;
-use super::surface::{Placed, Surface};
+use super::stage::{Moment, Stage};
+use super::surface::Placed;
 use super::{Contacts, Obstacle, Side};
 use crate::body::Body;
 use glam::DVec3;
@@ -27,14 +28,9 @@ pub struct Overlap {
 /// The surfaces of bodies and of obstacles, to ask what overlaps.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
-    /// Of the bodies, then of the obstacles with an extent.
-    pub(super) surfaces: Vec<Surface>,
-    sides: Vec<Side>,
+    pub(super) stage: Stage,
     pub(super) bodies: Vec<Arc<Body>>,
     pub(super) obstacles: Vec<Obstacle>,
-    /// The points of each obstacle at the start (m).
-    points: Vec<Vec<DVec3>>,
-    contacts: Contacts,
 }
 
 /// What lies deepest of a pair: how deep (m), negative where it is apart, and a point of one of the two surfaces.
@@ -45,35 +41,11 @@ struct Deepest {
     point: u32,
 }
 
-/// The places of points of all surfaces, and boxes around them (m).
-#[derive(Clone, Debug)]
-pub(super) struct Moment {
-    at: Vec<Vec<DVec3>>,
-    extents: Vec<Extent>,
-}
-
 impl Surfaces {
     /// The surfaces of bodies, whose nodes are numbered one body after the other, and of obstacles, which meet as `contacts` says.
     pub fn new(bodies: &[Arc<Body>], obstacles: &[Obstacle], contacts: &Contacts) -> Self {
-        let (mut surfaces, mut sides, mut points) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first = 0;
-        for (number, body) in bodies.iter().enumerate() {
-            let mut surface = Surface::of(body, first);
-            first += body.len() as u32;
-            let own = contacts.bodies.get(number).and_then(|body| body.thickness);
-            surface.thickness = own.unwrap_or(surface.thickness);
-            surfaces.push(surface);
-            sides.push(Side::Body(number));
-        }
-        for (number, obstacle) in obstacles.iter().enumerate().filter(|_| !bodies.is_empty()) {
-            let Some((surface, own)) = obstacle.shape.surface_of(bodies[0].dimension, first) else { continue };
-            first += own.len() as u32;
-            surfaces.push(surface);
-            sides.push(Side::Obstacle(number));
-            points.push(own);
-        }
-        let contacts = contacts.clone();
-        Self { surfaces, sides, bodies: bodies.to_vec(), obstacles: obstacles.to_vec(), points, contacts }
+        let stage = Stage::new(contacts, bodies, obstacles);
+        Self { stage, bodies: bodies.to_vec(), obstacles: obstacles.to_vec() }
     }
 
     /// What overlaps or touches among the pairs that are `wanted`, in order, with positions of all nodes (m), and obstacles as they are
@@ -81,17 +53,19 @@ impl Surfaces {
     /// obstacle or a half-space does not count: the way out is known there.
     pub fn overlaps(&self, position: &[DVec3], time: f64, wanted: impl Fn([Side; 2]) -> bool) -> Vec<Overlap> {
         const NEAR: f64 = 0.9;
-        let moment = self.place(position, time);
+        let stage = &self.stage;
+        let moment = stage.moment(position, time);
         let mut found = Vec::new();
         for one in 0..self.bodies.len() {
-            for other in one..self.surfaces.len() {
-                let [mine, theirs] = [one, other].map(|number| self.placed(&moment, number));
-                let (round, keeps) = (self.round_off(&moment, [one, other]), self.gap(one, other));
+            for other in one..stage.surfaces.len() {
+                let of = [one, other].map(|number| stage.side(number));
+                let [mine, theirs] = [one, other].map(|number| stage.placed(&moment, number));
+                let (round, keeps) = (round_off(&moment, [one, other]), stage.gap(one, other));
                 let is_round = theirs.radius() > 0.0;
                 let reach = if is_round || one == other { round } else { round.max(NEAR * keeps) };
-                if moment.extents[one].distance(&moment.extents[other]) > theirs.radius() + reach
-                    || !wanted([self.sides[one], self.sides[other]])
-                    || one == other && !self.contacts.bodies.get(one).is_some_and(|body| body.itself)
+                if moment.distance([one, other]) > theirs.radius() + reach
+                    || !wanted(of)
+                    || stage.law(one, other).is_none()
                 {
                     continue;
                 }
@@ -106,7 +80,7 @@ impl Surfaces {
                         _ => self.node(one, nearest(mine, theirs.at[point as usize])),
                     };
                     let depth = if depth.abs() > round { depth } else { 0.0 };
-                    Overlap { of: [self.sides[one], self.sides[other]], node, depth, keeps }
+                    Overlap { of, node, depth, keeps }
                 }));
             }
             found.extend(self.below(one, position, &moment, time).filter(|overlap| wanted(overlap.of)));
@@ -149,53 +123,19 @@ impl Surfaces {
         deepest.filter(|&(_, depth)| depth > TOUCHING * self.bodies[body].extent())
     }
 
-    /// Where all points are.
-    pub(super) fn place(&self, position: &[DVec3], time: f64) -> Moment {
-        let solids = self.sides[self.bodies.len()..].iter().zip(&self.points).flat_map(|(side, points)| {
-            let obstacle = match *side {
-                Side::Obstacle(number) | Side::Body(number) => &self.obstacles[number],
-            };
-            let pose = obstacle.pose(time);
-            points.iter().map(move |&point| pose.apply(obstacle.pivot, point))
-        });
-        let nodes: Vec<_> = position.iter().copied().chain(solids).collect();
-        let at: Vec<Vec<DVec3>> = self.surfaces.iter().map(|surface| surface.places(&nodes).collect()).collect();
-        let extents = at.iter().map(|points| Extent::around(points.iter().copied())).collect();
-        Moment { at, extents }
-    }
-
-    pub(super) fn placed<'a>(&'a self, moment: &'a Moment, number: usize) -> Placed<'a> {
-        Placed { surface: &self.surfaces[number], at: &moment.at[number] }
-    }
-
-    /// The distance that two surfaces keep (m), beside the radius of an obstacle.
-    pub(super) fn gap(&self, one: usize, other: usize) -> f64 {
-        let of = [one, other].map(|number| self.sides[number]);
-        let pair = self.contacts.pairs.iter().find(|pair| pair.of == of || pair.of == [of[1], of[0]]);
-        let own = |number: usize| if self.surfaces[number].is_round { 0.0 } else { self.surfaces[number].thickness };
-        pair.and_then(|pair| pair.thickness).unwrap_or(own(one) + own(other))
-    }
-
-    /// The distance (m) that is round-off between two surfaces.
-    fn round_off(&self, moment: &Moment, of: [usize; 2]) -> f64 {
-        /// Positions that were turned or moved have errors of some roundings.
-        const SEVERAL: f64 = 16.0;
-        SEVERAL * ROUND_OFF * of.map(|number| moment.extents[number].farthest()).into_iter().fold(0.0, f64::max)
-    }
-
     /// The node that a point of a body follows most.
     fn node(&self, surface: usize, point: u32) -> usize {
-        let (nodes, weights) = self.surfaces[surface].points.of(point as usize);
+        let (nodes, weights) = self.stage.surfaces[surface].points.of(point as usize);
         let most = |best: usize, at: usize| if weights[at] > weights[best] { at } else { best };
-        nodes[(0..nodes.len()).fold(0, most)] as usize
+        self.stage.nodes[nodes[(0..nodes.len()).fold(0, most)] as usize] as usize
     }
 }
 
-impl Moment {
-    /// The middle of the box around a surface (m).
-    pub(super) fn middle(&self, surface: usize) -> DVec3 {
-        self.extents[surface].middle()
-    }
+/// The distance (m) that is round-off between two surfaces.
+fn round_off(moment: &Moment, of: [usize; 2]) -> f64 {
+    /// Positions that were turned or moved have errors of some roundings.
+    const SEVERAL: f64 = 16.0;
+    SEVERAL * ROUND_OFF * of.map(|number| moment.extents[number].farthest()).into_iter().fold(0.0, f64::max)
 }
 
 /// Whether two surfaces are nearer than a distance (m) above zero, or overlap.

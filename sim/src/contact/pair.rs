@@ -7,7 +7,7 @@ use super::rule::Law;
 use super::shown::{Seen, Shown};
 use super::sleepers::Sleepers;
 use super::surface::{Placed, Surface};
-use super::touches::{Sides, Touches};
+use super::touches::Touches;
 
 /// Two surfaces that may meet, or one with itself.
 #[derive(Clone, Debug)]
@@ -110,7 +110,7 @@ impl Pair {
             sweep(sides, reach, axes, |features| found.push(features));
             if self.of[0] == self.of[1] {
                 let mut at = Shown::default();
-                at.place(one.surface, seen.rest);
+                at.place(one.surface, &seen.stage.rest);
                 let rest = Placed { surface: one.surface, at: &at.points };
                 found.retain(|&features| is_free(one.surface, kind, features));
                 kind.find([rest; 2], &found, &mut self.look.found);
@@ -132,7 +132,6 @@ impl Pair {
         let (due, far) = (*way + 2.0 * *ahead, law.gap + 2.0 * *ahead);
         for &kind in kinds {
             let Candidates { features: all, wakes } = &mut candidates[kind.number()];
-            let sides = Sides { kind, of: *of, seen };
             wakes.awake(due, awake);
             if kind == Kind::Edges {
                 // Points and facets meet where two edges are flat.
@@ -155,7 +154,7 @@ impl Pair {
                     continue;
                 }
                 if distance > 0.0 {
-                    touches.push(&sides, features, &closest);
+                    touches.push(kind, *of, seen, features, &closest);
                 }
                 wakes.sleep(at, f64::NEG_INFINITY);
             }

@@ -1,12 +1,26 @@
 //! Where bodies touch each other and obstacles, for pictures. It depends on positions alone.
 
+use super::Side;
 use super::features::Kind;
 use super::pair::Pair;
-use super::places::{ContactPoint, SLACK};
 use super::shown::{Seen, Shown};
 use super::stage::Stage;
 use glam::DVec3;
 use std::sync::PoisonError;
+
+/// A place where a body touches an obstacle, another body or itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// What the body touches.
+    pub from: Side,
+    /// The number of the body.
+    pub on: usize,
+    /// The place on the body (m).
+    pub at: DVec3,
+}
+
+/// What touches is at most this share of the distance that is kept farther apart than that.
+pub(super) const SLACK: f64 = 0.1;
 
 /// Places of a pair that are nearer than so many times the distance that is kept are one: the fifth part of a usual element.
 const SAME: f64 = 8.0;
@@ -17,7 +31,7 @@ impl Stage {
         let places = self.place(position, time);
         let mut shown = vec![Shown::default(); self.surfaces.len()];
         shown.iter_mut().zip(&self.surfaces).for_each(|(shown, surface)| shown.place(surface, &places));
-        let seen = Seen { surfaces: &self.surfaces, rest: &self.rest, start: &shown, drag: &|_, _, _| DVec3::ZERO };
+        let seen = Seen { stage: self, start: &shown, interval: None };
         let mut pairs = Vec::new();
         self.choose(&places, 0.0, &mut pairs);
         let mut found = Vec::new();

@@ -1,7 +1,8 @@
 //! Distances beside an independent evaluation, and the rule beside the exact truth of moving features.
 
 use super::closest::{of_segments, of_triangle};
-use super::rule::{Law, Motion, Moved, Term, Timing, Touch};
+use super::end::Ends;
+use super::rule::{Law, Motion, Term, Touch};
 use crate::noise::Noise;
 use glam::DVec3;
 
@@ -24,8 +25,8 @@ impl Features {
     fn weights(self, [a, b, c, d]: [DVec3; 4]) -> [f64; 4] {
         match self {
             Self::VertexFace => {
-                let shares = of_triangle(a, [b, c, d]).shares;
-                [1.0, -shares[0], -shares[1], -shares[2]]
+                let ([u, v, w], _) = of_triangle(a, [b, c, d]);
+                [1.0, -u, -v, -w]
             }
             Self::EdgeEdge => {
                 let [s, t] = of_segments([a, b], [c, d]);
@@ -103,11 +104,10 @@ impl Features {
         }
         let law = Law { gap: 0.05 * from[2].distance(from[3]), restitution: 0.0, friction: 0.0 };
         let touch = Touch { normal: way / distance, distance, is_whole: true, drag: DVec3::ZERO, terms: [0, 4] };
-        let mut position = to;
-        let mut motion = [0, 1, 2, 3].map(|at| Motion { inverse_mass: 1.0, ..Motion::held(to[at] - from[at]) });
-        let mut moved = Moved { position: &mut position, motion: &mut motion, step: 1.0, timing: Timing::End };
-        moved.resolve(law, &touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));
-        Some(position)
+        let motion = [0, 1, 2, 3].map(|at| Motion { inverse_mass: 1.0, ..Motion::held(to[at] - from[at]) });
+        let mut ends = Ends { position: to.to_vec(), motion: motion.to_vec(), step: 1.0, ..Ends::default() };
+        ends.resolve(law, &touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));
+        ends.position.try_into().ok()
     }
 }
 

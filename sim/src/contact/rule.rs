@@ -6,6 +6,7 @@
 //!
 //! Impulses that are distributed over nodes by weights: F. Cirak and M. West, Int. J. Numer. Meth. Engng 64, 1078 (2005).
 
+use super::end::Ends;
 use glam::{DMat3, DVec2, DVec3};
 
 /// How two surfaces meet.
@@ -28,9 +29,10 @@ impl Law {
 }
 
 /// The velocity with which nodes moved in a step, and the one that decides a rebound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Timing {
     /// They moved with the velocity at the end, as by semi-implicit Euler. The mean of those at the start and at the end decides.
+    #[default]
     End,
     /// They moved with the mean of those at the start and at the end, as by other methods. The one at the start decides: the impulse acts as
     /// if it were given there.
@@ -91,16 +93,6 @@ impl Motion {
     }
 }
 
-/// Nodes of surfaces and points of obstacles at the end of a step, which contact changes.
-pub(super) struct Moved<'a> {
-    /// Where they are (m).
-    pub(super) position: &'a mut [DVec3],
-    pub(super) motion: &'a mut [Motion],
-    /// ΔT (s).
-    pub(super) step: f64,
-    pub(super) timing: Timing,
-}
-
 /// Whether all further bounces of a pair would be over within some steps, so that it comes to rest now: with a restitution below 1 each one is
 /// shorter than the one before, which steps cannot follow. In a step that has gained `gained` of approach (m/s), bounces at the speed `start`
 /// (m/s), negative where the pair approaches at the start of the step, last `2 e |start|/gained` steps, and all after it `1/(1 − e)` times as long.
@@ -109,8 +101,8 @@ fn ends_bouncing(restitution: f64, start: f64, gained: f64) -> bool {
     2.0 * restitution * (-start).max(0.0) < STEPS * (1.0 - restitution) * gained
 }
 
-impl Moved<'_> {
-    fn place(&self, node: u32) -> DVec3 {
+impl Ends {
+    pub(super) fn place(&self, node: u32) -> DVec3 {
         self.position[node as usize]
     }
 
@@ -154,21 +146,6 @@ impl Moved<'_> {
             *turn += self.place(node).cross(impulse * weight);
         }
         (sums != [[DVec3::ZERO; 2]; 2]).then_some((sums, impulse))
-    }
-
-    /// What grips give the nodes that they hold against their shares of an impulse: the grip, the node, and its change of momentum and of
-    /// angular momentum about the origin. `held` has the held nodes in rising order, each with its grip.
-    pub(super) fn holding(
-        &self,
-        held: &[[usize; 2]],
-        terms: &[Term],
-        impulse: DVec3,
-    ) -> impl Iterator<Item = (usize, u32, [DVec3; 2])> {
-        terms.iter().filter_map(move |&Term { node, weight }| {
-            let at = held.binary_search_by_key(&(node as usize), |&[node, _]| node).ok()?;
-            let against = -impulse * weight;
-            Some((held[at][1], node, [against, self.place(node).cross(against)]))
-        })
     }
 
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.

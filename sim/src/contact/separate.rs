@@ -2,7 +2,8 @@
 
 use super::Side;
 use super::cross::{Corners, near_facets};
-use super::overlap::{Moment, Surfaces, is_nearer};
+use super::overlap::{Surfaces, is_nearer};
+use super::stage::Moment;
 use super::surface::Placed;
 use glam::DVec3;
 
@@ -27,9 +28,9 @@ impl Surfaces {
             if self.overlaps(position, time, is_wanted).is_empty() {
                 continue;
             }
-            let moment = self.place(position, time);
+            let moment = self.stage.moment(position, time);
             let earlier = (0..body).filter(|&other| meets([other, body]));
-            let others: Vec<_> = earlier.chain(self.bodies.len()..self.surfaces.len()).collect();
+            let others: Vec<_> = earlier.chain(self.bodies.len()..self.stage.surfaces.len()).collect();
             let Some(way) = (Search { of: self, moment: &moment, body, others, time }).way() else { continue };
             ways[body] = way;
             let first: usize = self.bodies[..body].iter().map(|body| body.len()).sum();
@@ -83,7 +84,7 @@ impl Search<'_> {
         if self.exit(direction, length) > length {
             return None;
         }
-        let fine = FINE * 2.0 * self.of.surfaces[self.body].thickness;
+        let fine = FINE * 2.0 * self.of.stage.surfaces[self.body].thickness;
         while length - least > fine.max(ROUND * length) {
             let middle = 0.5 * (least + length);
             if self.exit(direction, middle) > middle {
@@ -108,7 +109,7 @@ impl Search<'_> {
         let back = self.mine().at.iter().fold(f64::INFINITY, |least, at| least.min(direction.dot(*at)));
         let mut exit = length;
         for &other in &self.others {
-            let (theirs, gap) = (self.of.placed(self.moment, other), self.of.gap(self.body, other));
+            let (theirs, gap) = (self.of.stage.placed(self.moment, other), self.of.stage.gap(self.body, other));
             if is_nearer([moved, theirs], gap) {
                 // With a reserve for round-off.
                 exit = exit.max((last(theirs.at) - back + theirs.radius() + gap) * (1.0 + 1e-12));
@@ -125,7 +126,7 @@ impl Search<'_> {
     }
 
     fn mine(&self) -> Placed<'_> {
-        self.of.placed(self.moment, self.body)
+        self.of.stage.placed(self.moment, self.body)
     }
 
     /// Unit vectors along which a way may lead: axes, normals of what the body overlaps, and lines from middle to middle.
@@ -144,11 +145,11 @@ impl Search<'_> {
             }
         }
         for &other in &self.others {
-            let (mine, theirs) = (self.mine(), self.of.placed(self.moment, other));
-            if !is_nearer([mine, theirs], self.of.gap(self.body, other)) {
+            let (mine, theirs) = (self.mine(), self.of.stage.placed(self.moment, other));
+            if !is_nearer([mine, theirs], self.of.stage.gap(self.body, other)) {
                 continue;
             }
-            let [here, there] = [self.body, other].map(|surface| self.moment.middle(surface));
+            let [here, there] = [self.body, other].map(|surface| self.moment.extents[surface].middle());
             add((here - there).normalize());
             for [first, second] in near_facets([mine, theirs], theirs.radius()) {
                 add(Corners::of(theirs, second).normal());

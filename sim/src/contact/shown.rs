@@ -1,7 +1,9 @@
 //! Surfaces at the start of a step: the places of their points, and which of their edges are flat.
 
 use super::sleepers::Sleepers;
+use super::stage::Stage;
 use super::surface::{Placed, Surface};
+use crate::motion::Interval;
 use glam::DVec3;
 
 /// How far the points of a surface have moved: by `drift`, and from there by at most `spread` (m).
@@ -91,18 +93,16 @@ impl Shown {
 /// What is known of a step when pairs are looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
-    pub(super) surfaces: &'a [Surface],
-    /// Nodes at rest (m), for bodies that meet themselves.
-    pub(super) rest: &'a [DVec3],
+    pub(super) stage: &'a Stage,
     /// The surfaces at the start of the step; of those in pairs.
     pub(super) start: &'a [Shown],
-    /// See [`Touch::drag`](super::rule::Touch::drag): for a surface, a point on its axis (m), and the way from there to its surface (m).
-    pub(super) drag: &'a (dyn Fn(usize, DVec3, DVec3) -> DVec3 + Sync),
+    /// That of the step; `None` where it is not asked for how [round obstacles turn](super::rule::Touch::drag).
+    pub(super) interval: Option<Interval>,
 }
 
 impl<'a> Seen<'a> {
     pub(super) fn placed(&self, surface: usize) -> Placed<'a> {
-        Placed { surface: &self.surfaces[surface], at: &self.start[surface].points }
+        Placed { surface: &self.stage.surfaces[surface], at: &self.start[surface].points }
     }
 }
 

@@ -6,11 +6,11 @@ use super::ground::Grounds;
 use super::known::Known;
 use super::rule::Law;
 use super::surface::{Placed, Surface};
-use super::{Contacts, Obstacle, Side};
+use super::{Contacts, Obstacle, PairContact, Side};
+use crate::body::Body;
 use crate::motion::Interval;
-use crate::part::Part;
 use glam::DVec3;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The surfaces of a world, and what is known of their places. What is known only saves work: it changes no bit of what a step does.
 #[derive(Debug)]
@@ -20,8 +20,8 @@ pub(crate) struct Stage {
     pub(super) surfaces: Vec<Surface>,
     pub(super) bodies: usize,
     pub(super) obstacles: Vec<Solid>,
-    /// The nodes of the surfaces of bodies among all nodes of the world, each once.
-    pub(super) nodes: Vec<u32>,
+    /// The nodes of the surfaces of bodies among all nodes of the world, in rising order.
+    pub(crate) nodes: Vec<u32>,
     /// Of each of these its position at rest (m) and 1/m (1/kg).
     pub(super) rest: Vec<DVec3>,
     pub(super) inverse_mass: Vec<f64>,
@@ -58,48 +58,43 @@ impl Clone for Stage {
 }
 
 impl Stage {
-    /// The surfaces of bodies and obstacles; `None` if no two of them can meet.
-    pub(crate) fn new(contacts: &Contacts, parts: &[Part], obstacles: &[Obstacle]) -> Option<Self> {
-        let dimension = parts.first()?.body.dimension;
+    /// The surfaces of bodies, whose nodes are numbered one body after the other, and of obstacles.
+    pub(crate) fn new(contacts: &Contacts, bodies: &[Arc<Body>], obstacles: &[Obstacle]) -> Self {
         let (mut surfaces, mut nodes) = (Vec::new(), Vec::new());
         let (mut rest, mut inverse_mass) = (Vec::new(), Vec::new());
-        for Part { body, nodes: all, number, .. } in parts {
-            let surface = Surface::of(body, all.start as u32);
+        let mut first = 0;
+        for (number, body) in bodies.iter().enumerate() {
+            let surface = Surface::of(body);
             let own = surface.nodes.clone();
             let mut surface = surface.numbered(nodes.len() as u32).ready();
             surface.thickness =
-                contacts.bodies.get(*number).and_then(|body| body.thickness).unwrap_or(surface.thickness);
+                contacts.bodies.get(number).and_then(|body| body.thickness).unwrap_or(surface.thickness);
             surfaces.push(surface);
-            rest.extend(own.iter().map(|&node| body.rest[node as usize - all.start]));
-            inverse_mass.extend(own.iter().map(|&node| body.mass[node as usize - all.start].recip()));
-            nodes.extend(own);
+            rest.extend(own.iter().map(|&node| body.rest[node as usize]));
+            inverse_mass.extend(own.iter().map(|&node| body.mass[node as usize].recip()));
+            nodes.extend(own.iter().map(|node| first + node));
+            first += body.len() as u32;
         }
-        let bodies = surfaces.len();
         let mut solids = Vec::new();
         let mut first = nodes.len() as u32;
-        for (number, obstacle) in obstacles.iter().enumerate() {
-            let Some((surface, points)) = obstacle.shape.surface_of(dimension, first) else { continue };
+        for (number, obstacle) in obstacles.iter().enumerate().filter(|_| !bodies.is_empty()) {
+            let Some((surface, points)) = obstacle.shape.surface_of(bodies[0].dimension, first) else { continue };
             first += points.len() as u32;
             surfaces.push(surface.ready());
             let far = points.iter().fold(0.0, |most: f64, point| most.max(point.distance(obstacle.pivot)));
             let greatest_speed = obstacle.motion.greatest_speed(far);
             solids.push(Solid { number, obstacle: obstacle.clone(), points, greatest_speed });
         }
-        let grounds = Grounds::new(parts, &surfaces, obstacles);
-        let has_grounds = !grounds.is_empty();
-        let meets_itself = contacts.bodies.iter().any(|body| body.itself);
-        let stage = Self {
-            contacts: contacts.clone(),
-            surfaces,
-            bodies,
-            obstacles: solids,
-            nodes,
-            rest,
-            inverse_mass,
-            known: Mutex::default(),
-            grounds: Mutex::new(grounds),
-        };
-        (has_grounds || meets_itself || stage.surfaces.len() > 1).then_some(stage)
+        let grounds = Mutex::new(Grounds::new(bodies, &surfaces, obstacles));
+        let (contacts, bodies, known) = (contacts.clone(), bodies.len(), Mutex::default());
+        Self { contacts, surfaces, bodies, obstacles: solids, nodes, rest, inverse_mass, known, grounds }
+    }
+
+    /// Whether two surfaces can meet, or a surface and a half-space.
+    pub(crate) fn can_meet(&self) -> bool {
+        let has_grounds = !self.grounds.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
+        let meets_itself = self.contacts.bodies.iter().any(|body| body.itself);
+        self.bodies > 0 && (has_grounds || meets_itself || self.surfaces.len() > 1)
     }
 
     pub(super) fn side(&self, surface: usize) -> Side {
@@ -114,25 +109,27 @@ impl Stage {
         if one >= self.bodies || one == other && !self.contacts.bodies.get(one).is_some_and(|body| body.itself) {
             return None;
         }
-        let Contacts { restitution, friction, pairs, .. } = &self.contacts;
+        let Contacts { restitution, friction, .. } = self.contacts;
         let solid = other.checked_sub(self.bodies).map(|solid| &self.obstacles[solid].obstacle);
-        let gap = self.surfaces[one].thickness + self.surfaces[other].thickness;
-        let usual = solid.map_or([*restitution, *friction], |solid| [solid.restitution, solid.friction]);
-        let own = pairs.iter().find(|pair| {
-            let ([a, b], sides) = (pair.of, [self.side(one), self.side(other)]);
-            [a, b] == sides || [b, a] == sides
-        });
-        let law = Law { gap, restitution: usual[0], friction: usual[1] };
-        Some(own.map_or(law, |own| Law {
-            restitution: own.restitution.unwrap_or(law.restitution),
-            friction: own.friction.unwrap_or(law.friction),
-            gap: own.thickness.map_or(law.gap, |gap| gap + solid.map_or(0.0, |_| self.surfaces[other].thickness)),
-        }))
+        let usual = solid.map_or([restitution, friction], |solid| [solid.restitution, solid.friction]);
+        let own = self.pair(one, other);
+        Some(Law {
+            restitution: own.and_then(|own| own.restitution).unwrap_or(usual[0]),
+            friction: own.and_then(|own| own.friction).unwrap_or(usual[1]),
+            gap: self.gap(one, other) + self.surfaces[other].radius(),
+        })
     }
 
-    /// The nodes of the surfaces of bodies, in their order.
-    pub(crate) fn nodes(&self) -> &[u32] {
-        &self.nodes
+    /// The distance that two surfaces keep (m), beside the radius of an obstacle.
+    pub(super) fn gap(&self, one: usize, other: usize) -> f64 {
+        let own = |number: usize| if self.surfaces[number].is_round { 0.0 } else { self.surfaces[number].thickness };
+        self.pair(one, other).and_then(|pair| pair.thickness).unwrap_or(own(one) + own(other))
+    }
+
+    /// What is special of two surfaces.
+    fn pair(&self, one: usize, other: usize) -> Option<&PairContact> {
+        let [one, other] = [one, other].map(|number| self.side(number));
+        self.contacts.pairs.iter().find(|pair| pair.of == [one, other] || pair.of == [other, one])
     }
 
     /// A bound of the gaps of all pairs (m).
@@ -177,16 +174,39 @@ impl Stage {
 
     /// The number of pairs of facets that cross at a time (s), of each two surfaces that meet, with positions of all nodes (m).
     pub(crate) fn crossings(&self, position: &[DVec3], time: f64) -> Vec<([Side; 2], usize)> {
-        let places = self.place(position, time);
-        let at: Vec<Vec<_>> = self.surfaces.iter().map(|surface| surface.places(&places).collect()).collect();
-        let extents: Vec<_> = at.iter().map(|points| Extent::around(points.iter().copied())).collect();
-        let pairs = (0..self.bodies).flat_map(|one| (one..extents.len()).map(move |other| [one, other]));
-        let count = |[one, other]: [usize; 2]| {
-            let both = [one, other].map(|number| Placed { surface: &self.surfaces[number], at: &at[number] });
-            let is_near = extents[one].distance(&extents[other]) <= both[0].radius() + both[1].radius();
-            let count = if is_near && self.law(one, other).is_some() { crossings(both).len() } else { 0 };
-            ([self.side(one), self.side(other)], count)
+        let moment = self.moment(position, time);
+        let pairs = (0..self.bodies).flat_map(|one| (one..self.surfaces.len()).map(move |other| [one, other]));
+        let count = |of: [usize; 2]| {
+            let both = of.map(|number| self.placed(&moment, number));
+            let is_near = moment.distance(of) <= both[0].radius() + both[1].radius();
+            let count = if is_near && self.law(of[0], of[1]).is_some() { crossings(both).len() } else { 0 };
+            (of.map(|number| self.side(number)), count)
         };
         pairs.map(count).filter(|&(_, count)| count > 0).collect()
+    }
+
+    /// The places of the points of all surfaces at a time (s), from the positions of all nodes (m).
+    pub(super) fn moment(&self, position: &[DVec3], time: f64) -> Moment {
+        let places = self.place(position, time);
+        let at: Vec<Vec<_>> = self.surfaces.iter().map(|surface| surface.places(&places).collect()).collect();
+        let extents = at.iter().map(|points| Extent::around(points.iter().copied())).collect();
+        Moment { at, extents }
+    }
+
+    pub(super) fn placed<'a>(&'a self, moment: &'a Moment, number: usize) -> Placed<'a> {
+        Placed { surface: &self.surfaces[number], at: &moment.at[number] }
+    }
+}
+
+/// The places of points of all surfaces, and boxes around them (m).
+pub(super) struct Moment {
+    pub(super) at: Vec<Vec<DVec3>>,
+    pub(super) extents: Vec<Extent>,
+}
+
+impl Moment {
+    /// The distance between the boxes of two surfaces (m).
+    pub(super) fn distance(&self, [one, other]: [usize; 2]) -> f64 {
+        self.extents[one].distance(&self.extents[other])
     }
 }

@@ -1,13 +1,14 @@
 //! Contact of surfaces at the end of a step: which pairs may meet, what touches, and the impulses in a fixed order.
 
-use super::end::End;
+use super::end::{End, Ends};
 use super::features::Kind;
 use super::known::Known;
-use super::pair::{Look, Pair};
-use super::rule::Moved;
+use super::pair::Look;
+use super::rule::{Law, Term};
 use super::shown::{Seen, Shown, Way};
 use super::stage::Stage;
-use super::{Impulses, Side, Source};
+use super::touches::Touches;
+use super::{Side, Source};
 use crate::crew::Crew;
 use glam::DVec3;
 use std::sync::PoisonError;
@@ -78,49 +79,49 @@ impl Stage {
         /// So many pairs for each thread are looked at before they are resolved.
         const AHEAD: usize = 4;
         let Known { ends, pairs, shown, looks, .. } = known;
-        let seen = Seen {
-            surfaces: &self.surfaces,
-            rest: &self.rest,
-            start: shown,
-            drag: &|surface, at, out| self.drag(surface, end.interval, at, out),
-        };
+        let seen = Seen { stage: self, start: shown, interval: Some(end.interval) };
         crew.each(pairs, |pair| pair.go(&seen));
         looks.resize(if crew.threads() > 1 { AHEAD * crew.threads() } else { 1 }, Look::default());
-        let (mut nodes, held) = ends.moved(end);
         for kinds in [Kind::POINTS, Kind::EDGES] {
             for pairs in pairs.chunks_mut(looks.len()) {
                 pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
                 crew.each(pairs, |pair| pair.look(kinds, &seen));
-                pairs.iter().for_each(|pair| self.push(pair, &mut nodes, held, end));
+                for pair in &*pairs {
+                    let sides = pair.of.map(|surface| self.side(surface));
+                    ends.push(&pair.look.touches, pair.law, sides, self.first_node(pair.of[1]), end);
+                }
                 pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
             }
         }
     }
+}
 
-    /// Gives all that touches in a pair its impulse.
-    fn push(&self, pair: &Pair, nodes: &mut Moved<'_>, held: &[[usize; 2]], end: &End<'_>) {
-        let second = self.first_node(pair.of[1]);
-        for (touch, terms) in pair.look.touches.iter() {
+impl Ends {
+    /// Gives all that touches of two sides its impulse. The nodes of the second one are numbered from `second` on. A body exerts nothing on
+    /// itself.
+    pub(super) fn push(&mut self, touches: &Touches, law: Law, of: [Side; 2], second: u32, end: &End<'_>) {
+        for (touch, terms) in touches.iter() {
             let Some(impulses) = end.impulses else {
-                nodes.resolve(pair.law, touch, terms);
+                self.resolve(law, touch, terms);
                 continue;
             };
-            let Some((sums, impulse)) = nodes.resolve_and_tell(pair.law, touch, terms, second) else { continue };
-            self.tell(impulses, end.interval.end, pair.of, sums);
-            for (grip, node, changes) in nodes.holding(held, terms, impulse) {
-                let on = pair.of[usize::from(node >= second)];
-                impulses.feel_surface(end.interval.end, Source::Grip(grip), on, changes);
+            let Some((sums, impulse)) = self.resolve_and_tell(law, touch, terms, second) else { continue };
+            let tell = |from: Source, on: Side, changes: [DVec3; 2]| {
+                if let Side::Body(on) = on {
+                    impulses.feel_surface(end.interval.end, from, on, changes);
+                }
+            };
+            if of[0] != of[1] {
+                tell(of[1].into(), of[0], sums[0]);
+                tell(of[0].into(), of[1], sums[1]);
             }
-        }
-    }
-
-    /// Adds what the sides of a pair have got in a step that ends at a time (s). A body exerts nothing on itself.
-    fn tell(&self, impulses: &Impulses, time: f64, [one, other]: [usize; 2], [on_one, on_other]: [[DVec3; 2]; 2]) {
-        if one != other {
-            impulses.feel_surface(time, self.side(other).into(), one, on_one);
-        }
-        if let (true, Side::Body(body)) = (one != other, self.side(other)) {
-            impulses.feel_surface(time, self.side(one).into(), body, on_other);
+            // What grips give the nodes that they hold against their shares.
+            for &Term { node, weight } in terms {
+                let Ok(at) = self.held.binary_search_by_key(&(node as usize), |&[node, _]| node) else { continue };
+                let against = -impulse * weight;
+                let changes = [against, self.place(node).cross(against)];
+                tell(Source::Grip(self.held[at][1]), of[usize::from(node >= second)], changes);
+            }
         }
     }
 }

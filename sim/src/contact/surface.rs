@@ -55,7 +55,7 @@ impl Placed<'_> {
 
     /// The radius of a round obstacle (m); zero of other surfaces.
     pub(super) fn radius(&self) -> f64 {
-        if self.surface.is_round { self.surface.thickness } else { 0.0 }
+        self.surface.radius()
     }
 
     pub(super) fn point(&self, point: u32) -> DVec3 {
@@ -84,40 +84,33 @@ impl Facet {
 }
 
 impl Surface {
-    /// The surface of a body whose first node has the number `first` in its world, with the usual thickness.
-    pub(crate) fn of(body: &Body, first: u32) -> Self {
+    /// The surface of a body, with the usual thickness.
+    pub(crate) fn of(body: &Body) -> Self {
         /// The distance that two bodies of equal cells keep, as a share of a cell.
         const GAP: f64 = 0.05;
         let made = match (&body.carried, body.dimension) {
-            (Some(carried), Dimension::Space) => Self::carried(carried, first),
-            (_, Dimension::Space) => Self::in_space(body, first),
-            (_, Dimension::Plane) => Self::in_plane(body, first),
+            (Some(carried), Dimension::Space) => Self::carried(carried),
+            (_, Dimension::Space) => Self::in_space(body),
+            (_, Dimension::Plane) => Self::in_plane(body),
         };
         let place = |point: u32| match made.points.of(point as usize) {
-            (&[node], _) => body.rest[(node - first) as usize],
-            (nodes, weights) => {
-                nodes.iter().zip(weights).map(|(&node, &weight)| body.rest[(node - first) as usize] * weight).sum()
-            }
+            (&[node], _) => body.rest[node as usize],
+            _ => made.points.place(point as usize, &body.rest),
         };
         Self { thickness: 0.5 * GAP * made.cell(place), ..made }
     }
 
-    fn carried(carried: &Carried, first: u32) -> Self {
-        let mut points = Weights::default();
-        for point in 0..carried.weights.len() {
-            let (nodes, weights) = carried.weights.of(point);
-            points.push(&nodes.iter().map(|node| first + node).collect::<Vec<_>>(), weights);
-        }
+    fn carried(carried: &Carried) -> Self {
         let facets = carried.triangles.iter().map(|&corners| (corners, 3)).collect();
-        let made = Self::new(points, facets, &[]);
+        let made = Self::new(carried.weights.clone(), facets, &[]);
         let is_closed = made.wings.iter().all(|wings| wings.len() % 2 == 0);
         let bounding = if is_closed { (0..made.facets.len() as u32).collect() } else { Vec::new() };
         Self { bounding, ..made }
     }
 
     /// The outer faces of elements, triangles and bars.
-    fn in_space(body: &Body, first: u32) -> Self {
-        let mut made = Making::new(first);
+    fn in_space(body: &Body) -> Self {
+        let mut made = Making::default();
         let faces = body.topology().shared_faces();
         for (face, nodes) in faces.nodes.iter().enumerate() {
             if faces.outer[face].is_none() {
@@ -133,8 +126,8 @@ impl Surface {
     }
 
     /// The sides of polygons that belong to one polygon only, and bars.
-    fn in_plane(body: &Body, first: u32) -> Self {
-        let mut made = Making::new(first);
+    fn in_plane(body: &Body) -> Self {
+        let mut made = Making::default();
         let polygons = || body.elements.iter().zip(&body.kinds).filter(|(_, kind)| **kind == ElementKind::Polygon);
         let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
         for side in polygons().flat_map(|(nodes, _)| around(nodes)) {
@@ -213,6 +206,11 @@ impl Surface {
         }
     }
 
+    /// The radius of a round obstacle (m); zero of other surfaces.
+    pub(super) fn radius(&self) -> f64 {
+        if self.is_round { self.thickness } else { 0.0 }
+    }
+
     /// The places of its points (m), from those of nodes.
     pub(super) fn places(&self, nodes: &[DVec3]) -> impl Iterator<Item = DVec3> {
         (0..self.points.len()).map(|point| self.points.place(point, nodes))
@@ -254,8 +252,8 @@ impl Surface {
 }
 
 /// A surface in the making.
+#[derive(Default)]
 struct Making {
-    first: u32,
     points: Weights,
     /// The point of each node.
     known: HashMap<u32, u32>,
@@ -265,16 +263,11 @@ struct Making {
 }
 
 impl Making {
-    fn new(first: u32) -> Self {
-        let points = Weights::default();
-        Self { first, points, known: HashMap::new(), facets: Vec::new(), bounding: Vec::new(), bars: Vec::new() }
-    }
-
     /// The point of a node of the body.
     fn node(&mut self, node: u32) -> u32 {
-        let Self { first, points, known, .. } = self;
+        let Self { points, known, .. } = self;
         *known.entry(node).or_insert_with(|| {
-            points.push(&[*first + node], &[1.0]);
+            points.push(&[node], &[1.0]);
             points.len() as u32 - 1
         })
     }
@@ -286,8 +279,7 @@ impl Making {
             self.facets.push(([a, b, c], 3));
             return;
         }
-        let all: Vec<u32> = nodes.iter().map(|node| self.first + node).collect();
-        self.points.push(&all, &vec![1.0 / nodes.len() as f64; nodes.len()]);
+        self.points.push(nodes, &vec![1.0 / nodes.len() as f64; nodes.len()]);
         let middle = self.points.len() as u32 - 1;
         self.facets.extend(around(&corners).map(|[a, b]| ([a, b, middle], 3)));
     }
@@ -318,7 +310,7 @@ mod tests {
 
     #[test]
     fn a_cube_has_middles_and_diagonals() {
-        let surface = Surface::of(&cube(), 5);
+        let surface = Surface::of(&cube()).numbered(5);
         assert_eq!((surface.points.len(), surface.facets.len(), surface.edges.len()), (14, 24, 12 + 24));
         assert!(surface.wings.iter().all(|wings| wings.len() == 2));
         assert_eq!(surface.nodes, (5..13).collect::<Vec<_>>());
@@ -334,7 +326,7 @@ mod tests {
         let rest = (0..6).map(|at| DVec3::new(f64::from(at % 3), f64::from(at / 3), 0.0)).collect();
         let elements = [&[0, 1, 4, 3][..], &[1, 2, 5, 4]].into_iter().collect();
         let body = Body::builder(rest).dimension(Dimension::Plane).elements(elements).build().expect("two squares");
-        let surface = Surface::of(&body, 0);
+        let surface = Surface::of(&body);
         assert_eq!((surface.points.len(), surface.facets.len(), surface.edges.len()), (6, 6, 0));
         let place = |point: u32| body.rest[surface.points.of(point as usize).0[0] as usize];
         assert_eq!(surface.cell(place), 1.0);
@@ -345,7 +337,7 @@ mod tests {
         let rest = (0..5).map(|at| DVec3::new(f64::from(at), f64::from(at * at), 0.0)).collect();
         let elements = [&[0, 1, 2][..], &[1, 2, 3], &[3, 4]].into_iter().collect();
         let body = Body::builder(rest).elements(elements).build().expect("a mixed body");
-        let surface = Surface::of(&body, 0);
+        let surface = Surface::of(&body);
         assert_eq!((surface.facets.len(), surface.edges.len()), (3, 6));
         assert_eq!(surface.wings.iter().map(<[u32]>::len).collect::<Vec<_>>(), [1, 2, 1, 1, 1, 0]);
     }

@@ -3,20 +3,13 @@
 use super::features::{Closest, Kind};
 use super::rule::{Term, Touch};
 use super::shown::Seen;
+use glam::DVec3;
 
 /// What touches of two surfaces in a step, in the order of features.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Touches {
-    all: Vec<Touch>,
-    terms: Vec<Term>,
-}
-
-/// Two surfaces whose features touch.
-pub(super) struct Sides<'a> {
-    pub(super) kind: Kind,
-    /// Their numbers.
-    pub(super) of: [usize; 2],
-    pub(super) seen: &'a Seen<'a>,
+    pub(super) all: Vec<Touch>,
+    pub(super) terms: Vec<Term>,
 }
 
 impl Touches {
@@ -33,10 +26,16 @@ impl Touches {
         })
     }
 
-    /// Adds a pair of closest points.
-    pub(super) fn push(&mut self, sides: &Sides<'_>, [first, second]: [u32; 2], closest: &Closest) {
-        let Sides { kind, of, seen } = *sides;
-        let [one, other] = of.map(|surface| &seen.surfaces[surface]);
+    /// Adds the closest points of two features of surfaces with these numbers.
+    pub(super) fn push(
+        &mut self,
+        kind: Kind,
+        of: [usize; 2],
+        seen: &Seen<'_>,
+        [first, second]: [u32; 2],
+        closest: &Closest,
+    ) {
+        let [one, other] = of.map(|surface| &seen.stage.surfaces[surface]);
         let begin = self.terms.len();
         let [mine, theirs] = closest.shares;
         let terms = &mut self.terms;
@@ -57,7 +56,8 @@ impl Touches {
         let distance = closest.way.length();
         let normal = closest.way * (sign / distance);
         let there = if sign > 0.0 { closest.here - closest.way } else { closest.here };
-        let drag = (seen.drag)(of[1], there, normal * other.thickness);
+        let out = normal * other.thickness;
+        let drag = seen.interval.map_or(DVec3::ZERO, |interval| seen.stage.drag(of[1], interval, there, out));
         let terms = [begin, self.terms.len()].map(|at| at as u32);
         let is_whole = closest.is_least || of[0] == of[1];
         self.all.push(Touch { normal, distance, is_whole, drag, terms });

@@ -161,7 +161,7 @@ impl Dynamics for ByKernel {
                 meeting: system.contact.as_ref().map(|stage| Meeting {
                     meet: &meet,
                     alone: &alone,
-                    nodes: stage.nodes(),
+                    nodes: &stage.nodes,
                 }),
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
