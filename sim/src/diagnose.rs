@@ -14,18 +14,18 @@ use std::sync::Arc;
 
 /// The precomputed part of the diagnostics of a body.
 pub(crate) struct Diagnose {
-    body: Arc<Body>,
+    pub(super) body: Arc<Body>,
     /// Signed volume of each element at rest (m³, in the plane m²). It is zero for segments, triangles in space and all
     /// elements that are flat at rest, which therefore never count as turned over.
-    volumes_at_rest: Vec<f64>,
+    pub(super) volumes_at_rest: Vec<f64>,
     /// The sum of what is filled of them.
-    volume_at_rest: f64,
+    pub(super) volume_at_rest: f64,
     /// The elements without a volume from faces.
     affine: Vec<Affine>,
     /// Mean of the rest positions (m).
     rest_centre: DVec3,
     /// Rest positions relative to their mean (m).
-    centred: Vec<DVec3>,
+    pub(super) centred: Vec<DVec3>,
 }
 
 impl Diagnose {
@@ -50,7 +50,7 @@ impl Diagnose {
         crew: &'a Crew,
     ) -> BodyFacts<'a> {
         BodyFacts {
-            mass: &self.body.mass,
+            of: self,
             state,
             global_rotations,
             broken,
@@ -58,11 +58,7 @@ impl Diagnose {
             report: Lazy::new(Box::new(report)),
             volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
             gone,
-            volumes_at_rest: &self.volumes_at_rest,
-            fill: self.body.fill.as_deref(),
-            volume_at_rest: self.volume_at_rest,
             placement: Lazy::new(Box::new(move || self.placement(state.position))),
-            centred: &self.centred,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The diagnostics: numbers that describe a state. One table defines the name, key, unit, meaning and formula of each;
 //! files, strips, figures, goldens and the schema are derived from it.
 
+use super::diagnose::Diagnose;
 use super::fill;
 use super::model::Report;
 use super::placement::Placement;
@@ -27,8 +28,8 @@ pub(super) struct Outside {
 
 /// The quantities of one body from which diagnostics are computed.
 pub(super) struct BodyFacts<'a> {
-    /// Mass of each node (kg).
-    pub(super) mass: &'a [f64],
+    /// What is known of it at rest.
+    pub(super) of: &'a Diagnose,
     pub(super) state: Nodes<'a>,
     /// Rotations that the global solver has computed.
     pub(super) global_rotations: f64,
@@ -41,15 +42,7 @@ pub(super) struct BodyFacts<'a> {
     pub(super) volumes: Lazy<'a, Vec<f64>>,
     /// Whether each element is broken; empty if none can be.
     pub(super) gone: Vec<bool>,
-    /// Signed volume of each element at rest (m³, in the plane m²).
-    pub(super) volumes_at_rest: &'a [f64],
-    /// The filled part of each element, unless all are full.
-    pub(super) fill: Option<&'a [f64]>,
-    /// The sum of what is filled of the volumes at rest (m³, in the plane m²).
-    pub(super) volume_at_rest: f64,
     pub(super) placement: Lazy<'a, Placement>,
-    /// Rest positions relative to their mean (m).
-    pub(super) centred: &'a [DVec3],
 }
 
 /// An element has turned over if its signed volume is below minus this fraction of the volume at rest.
@@ -82,7 +75,7 @@ impl BodyFacts<'_> {
     /// The sum over its nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
     fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
         let Nodes { position, velocity } = self.state;
-        let nodes = self.mass.iter().zip(position).zip(velocity);
+        let nodes = self.of.body.mass.iter().zip(position).zip(velocity);
         nodes.fold(T::default(), |mut sum, ((&mass, &position), &velocity)| {
             sum += of_node(mass, position, velocity);
             sum
@@ -102,23 +95,24 @@ impl BodyFacts<'_> {
     /// Whether each element is not broken, and has a property by its volumes now and at rest.
     fn are_whole(&self, is: fn(f64, f64) -> bool) -> impl Iterator<Item = bool> {
         let is_gone = |at: usize| self.gone.get(at).copied().unwrap_or(false);
-        let volumes = self.volumes.iter().zip(self.volumes_at_rest).enumerate();
+        let volumes = self.volumes.iter().zip(&self.of.volumes_at_rest).enumerate();
         volumes.map(move |(at, (&now, &at_rest))| is(now, at_rest) && !is_gone(at))
     }
 
     /// The volume of what is filled of the elements that are not broken (m³, in the plane m²).
     fn volume(&self) -> f64 {
+        let fill = self.of.body.fill.as_deref();
         if !self.gone.contains(&true) {
-            return fill::volume(self.fill, &self.volumes);
+            return fill::volume(fill, &self.volumes);
         }
         let whole: Vec<_> = self.volumes.iter().zip(&self.gone).map(|(&v, &gone)| if gone { 0.0 } else { v }).collect();
-        fill::volume(self.fill, &whole)
+        fill::volume(fill, &whole)
     }
 
     /// The sum of the squared distances of the nodes from the placement (m²).
     fn squared_distances(&self) -> f64 {
         let Placement { centre, turn, .. } = *self.placement;
-        let squared = self.centred.iter().zip(self.state.position);
+        let squared = self.of.centred.iter().zip(self.state.position);
         squared.map(|(&rest, &now)| (now - centre - turn * rest).length_squared()).sum()
     }
 }
@@ -356,7 +350,7 @@ diagnostics! { facts:
 
     /// Total signed volume of what is filled of the elements, divided by that at rest; in the plane, area.
     VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries =
-        facts.total(BodyFacts::volume) / facts.total(|body| body.volume_at_rest);
+        facts.total(BodyFacts::volume) / facts.total(|body| body.of.volume_at_rest);
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape of their body (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();
