@@ -79,15 +79,6 @@ impl Assembly {
         assert!(node < self.whole.len(), "a node of the assembly");
         self.starts.partition_point(|start| start[0] <= node) - 1
     }
-
-    /// The body to which an element belongs.
-    ///
-    /// # Panics
-    /// If there is no such element.
-    pub fn body_of_element(&self, element: usize) -> usize {
-        assert!(element < self.whole.elements.len(), "an element of the assembly");
-        self.starts.partition_point(|start| start[1] <= element) - 1
-    }
 }
 
 impl From<&Arc<Body>> for Assembly {
@@ -134,7 +125,6 @@ mod tests {
             let edges = own.topology().edges_of(0).len();
             assert_eq!(whole.topology().edges_of(elements.start).len(), edges);
             assert!(nodes.clone().all(|node| assembly.body_of_node(node) == at));
-            assert!(elements.clone().all(|element| assembly.body_of_element(element) == at));
         }
         let springs = |body: &Body| body.topology().springs(Springs::All).len();
         assert_eq!(springs(whole), bodies.iter().map(|own| springs(own)).sum::<usize>());
