@@ -5,6 +5,7 @@
 
 use std::fmt;
 use std::hint::spin_loop;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -88,16 +89,11 @@ impl Crew {
         assert!(!panicked.swap(false, Ordering::Relaxed), "a thread that helped has panicked");
     }
 
-    /// Calls `work` with each item, in parallel and in no order.
+    /// Calls `work` with the number of each item and the item, in parallel and in no order.
     ///
     /// # Panics
     /// If `work` panics on any thread.
-    pub(crate) fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
-        self.each_of(items, |_, item| work(item));
-    }
-
-    /// As [`Self::each`], with the number of each item.
-    pub(crate) fn each_of<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+    pub(crate) fn each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         if self.threads().min(items.len()) <= 1 {
             return items.iter_mut().enumerate().for_each(|(number, item)| work(number, item));
         }
@@ -108,6 +104,16 @@ impl Crew {
                 work(number, item);
             }
         });
+    }
+
+    /// The results of `work` for the chunks of `count` elements, in order. They depend on `count` alone, and so do sums over them.
+    ///
+    /// # Panics
+    /// If `work` panics on any thread.
+    pub(crate) fn map_chunks<T: Send>(&self, count: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+        /// Elements in one task of a thread.
+        const CHUNK: usize = 1024;
+        self.map(count.div_ceil(CHUNK), |chunk| work(chunk * CHUNK..count.min((chunk + 1) * CHUNK)))
     }
 
     /// The results of `work` for each number below `count`, in order; each thread computes a range of them.

@@ -5,13 +5,10 @@ use super::crew::Crew;
 use super::element;
 use super::element::ElementKind;
 use super::gather::Group;
-use super::lanes::{Lanes, Set, Single, Work, each};
+use super::lanes::{Lanes, One, Set, Work, each};
 use super::rotation::moment;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
-
-/// Elements in one task of a thread.
-const CHUNK: usize = 1024;
 
 /// An element without a table of faces. Its volume is that of the affine map that fits it best, `det(Σ r R0ᵀ (Σ R0
 /// R0ᵀ)⁻¹)` times its volume at rest.
@@ -87,10 +84,8 @@ pub(super) fn at_rest(body: &Body, affine: &[Affine]) -> Vec<f64> {
 
 /// Signed volume of each element from its faces (m³, in the plane m²); zero for elements without faces of their own.
 pub(super) fn volumes_by_faces(body: &Body, position: &[DVec3], crew: &Crew) -> Vec<f64> {
-    let (set, count) = (Set::best(), body.elements.len());
-    let of_chunk =
-        |chunk: usize| set.run(Measure { body, position, range: chunk * CHUNK..count.min((chunk + 1) * CHUNK) });
-    crew.map(count.div_ceil(CHUNK), of_chunk).concat()
+    let set = Set::best();
+    crew.map_chunks(body.elements.len(), |range| set.run(Measure { body, position, range })).concat()
 }
 
 /// Computes the volumes of consecutive elements from their faces.
@@ -148,9 +143,9 @@ pub fn volume_by_faces(kind: ElementKind, nodes: &[u32], position: &[DVec3]) -> 
         return 0.5 * element::around(nodes).map(|[a, b]| at(a).cross(at(b)).z).sum::<f64>();
     }
     // Relative to the first corner, for the same reason. An element with a table of faces has at most eight corners.
-    let mut corners = [[Single::splat(0.0); 3]; 8];
+    let mut corners = [[One::splat(0.0); 3]; 8];
     for (corner, &node) in corners.iter_mut().zip(nodes) {
-        *corner = (position[node as usize] - position[nodes[0] as usize]).to_array().map(Single::splat);
+        *corner = (position[node as usize] - position[nodes[0] as usize]).to_array().map(One::splat);
     }
     inside(kind, &corners).to_array()[0]
 }

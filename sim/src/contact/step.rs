@@ -53,7 +53,7 @@ impl Stage {
             last.clone_from(&ends.start);
         }
         shown.resize(self.surfaces.len(), Shown::default());
-        crew.each_of(shown, |number, shown| {
+        crew.each(shown, |number, shown| {
             let surface = &self.surfaces[number];
             shown.go(surface, [&*last, &ends.start, &ends.position].map(|all| &all[surface.range()]));
         });
@@ -66,7 +66,7 @@ impl Stage {
         is_near.clear();
         is_near.resize(shown.len(), false);
         pairs.iter().flat_map(|pair| pair.of).for_each(|surface| is_near[surface] = true);
-        crew.each_of(shown, |number, shown| {
+        crew.each(shown, |number, shown| {
             if is_near[number] {
                 shown.place(&self.surfaces[number], &ends.start);
             }
@@ -80,12 +80,12 @@ impl Stage {
         const AHEAD: usize = 4;
         let Known { ends, pairs, shown, looks, .. } = known;
         let seen = Seen { stage: self, start: shown, interval: Some(end.interval) };
-        crew.each(pairs, |pair| pair.go(&seen));
+        crew.each(pairs, |_, pair| pair.go(&seen));
         looks.resize(if crew.threads() > 1 { AHEAD * crew.threads() } else { 1 }, Look::default());
         for kinds in [Kind::POINTS, Kind::EDGES] {
             for pairs in pairs.chunks_mut(looks.len()) {
                 pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
-                crew.each(pairs, |pair| pair.look(kinds, &seen));
+                crew.each(pairs, |_, pair| pair.look(kinds, &seen));
                 for pair in &*pairs {
                     let sides = pair.of.map(|surface| self.side(surface));
                     ends.push(&pair.look.touches, pair.law, sides, self.first_node(pair.of[1]), end);

@@ -9,21 +9,15 @@ use crate::law::{Corners, Reader, alike};
 use glam::{DMat3, DQuat, DVec3};
 use std::ops::Range;
 
-/// Elements in one task of a thread.
-const CHUNK: usize = 1024;
-
 /// The [strain](crate::field::Field::Strain) of each element with the nodes at `position` (m). Rotations are sought
 /// from `near` on: the nearer it is, the faster they are found.
 pub(crate) fn strains(set: Set, body: &Body, position: &[DVec3], near: DMat3, crew: &Crew) -> Vec<f64> {
-    let count = body.elements.len();
     let near = match body.dimension {
         // Eq. (9) keeps the last angle only where all are equally good.
         Dimension::Plane => [1.0, 0.0, 0.0, 0.0],
         Dimension::Space => DQuat::from_mat3(&near).to_array(),
     };
-    let of_chunk =
-        |chunk: usize| set.run(Strains { body, position, near, range: chunk * CHUNK..count.min((chunk + 1) * CHUNK) });
-    crew.map(count.div_ceil(CHUNK), of_chunk).concat()
+    crew.map_chunks(body.elements.len(), |range| set.run(Strains { body, position, near, range })).concat()
 }
 
 /// Computes the strains of consecutive elements.

@@ -453,16 +453,12 @@ impl Rollback {
         if self.parts.iter().all(is_divided) {
             return first;
         }
-        let whole = self.parts.iter_mut().filter(|part| !is_divided(part));
-        let (queue, found) = (Mutex::new(whole), Mutex::new(first));
-        crew.run(&|_| {
-            let alone = Crew::new(1);
-            let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-            while let Some(part) = next() {
-                if let Some(lost) = advance(part, &alone) {
-                    let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-                    *found = Some(found.map_or(lost, |found| found.min(lost)));
-                }
+        let mut whole: Vec<_> = self.parts.iter_mut().filter(|part| !is_divided(part)).collect();
+        let (alone, found) = (Crew::new(1), Mutex::new(first));
+        crew.each(&mut whole, |_, part| {
+            if let Some(lost) = advance(part, &alone) {
+                let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+                *found = Some(found.map_or(lost, |found| found.min(lost)));
             }
         });
         found.into_inner().unwrap_or_else(PoisonError::into_inner)

@@ -337,8 +337,6 @@ macro_rules! consecutive {
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod portable;
-/// A single number.
-pub(crate) use portable::Vector as Single;
 #[cfg(test)]
 mod tests;
 #[cfg(target_arch = "x86_64")]

@@ -5,15 +5,12 @@ use crate::body::Body;
 use crate::crew::Crew;
 use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::lists::IndexLists;
-use crate::model::blocks::{self, Gather};
+use crate::model::blocks::{self, EntriesOfNode};
 use crate::model::{ForceModel, Report, Scratch, Share};
 use crate::state::Nodes;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
-
-/// Elements in one task of a thread.
-const CHUNK: usize = 1024;
 
 /// The elastic energy of a body.
 pub(crate) trait Energy: Send + Sync {
@@ -35,7 +32,7 @@ pub struct ByLaw<W> {
     elements: Option<IndexLists>,
     /// The relative stiffness of each element; `None` if all are 1.
     fill: Option<Vec<f64>>,
-    gather: OnceLock<Gather>,
+    gather: OnceLock<EntriesOfNode>,
 }
 
 impl<W: Law> ByLaw<W> {
@@ -64,24 +61,13 @@ impl<W: Law> ByLaw<W> {
 
 impl<W: Law> Energy for ByLaw<W> {
     fn report(&self, position: &[DVec3], memory: &[f64], share: Option<&mut Share<'_>>, crew: &Crew) -> Report {
-        let count = self.elements().len();
-        let range = |chunk: usize| chunk * CHUNK..count.min((chunk + 1) * CHUNK);
         let with_shares = share.is_some();
-        let measure = |chunk: usize| {
-            let chunk = Energies { by: self, position, memory, range: range(chunk), with_shares };
-            self.set.run(chunk)
-        };
-        let found: Vec<Found> = crew.map(count.div_ceil(CHUNK), measure);
+        let measure = |range| self.set.run(Energies { by: self, position, memory, range, with_shares });
+        let found: Vec<Found> = crew.map_chunks(self.elements().len(), measure);
         if let Some(share) = share {
-            for (chunk, Found { shares, .. }) in found.iter().enumerate() {
-                let mut rest = &shares[..];
-                for at in range(chunk) {
-                    let nodes = &self.elements()[at];
-                    let (own, others) = rest.split_at(nodes.len());
-                    share(at, nodes, own);
-                    rest = others;
-                }
-            }
+            let (elements, shares) = (self.elements(), found.iter().flat_map(|chunk| &chunk.shares));
+            let shares: Vec<f64> = shares.copied().collect();
+            (0..elements.len()).for_each(|at| share(at, &elements[at], &shares[elements.range(at)]));
         }
         let energy = found.iter().map(|chunk| chunk.energy).sum();
         let residual = found.iter().fold(0.0, |most: f64, chunk| most.max(chunk.residual));
@@ -161,7 +147,7 @@ impl<W: Law> ForceModel for ByLaw<W> {
         blocks::for_each_block(crew, elements, W::MEMORY, next, corners, &|range, next, corners| {
             self.set.run(Forces { by: self, at, memory, range, next, corners });
         });
-        let gather = || Gather::new(self.body.len(), elements.indices().iter().copied());
+        let gather = || EntriesOfNode::new(self.body.len(), (0..).zip(elements.indices().iter().copied()));
         self.gather.get_or_init(gather).add(crew, corners, forces);
     }
 

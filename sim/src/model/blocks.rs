@@ -81,28 +81,7 @@ fn run<S: Send>(crew: &Crew, shares: impl Iterator<Item = S>, work: impl Fn(S) +
     });
 }
 
-/// For each node, the entries of a list of forces that act on it.
-pub(crate) struct Gather {
-    entries: EntriesOfNode,
-}
-
-impl Gather {
-    /// `node_of_entry` names the node on which each entry acts.
-    pub(crate) fn new(nodes: usize, node_of_entry: impl Iterator<Item = u32> + Clone) -> Self {
-        Self { entries: EntriesOfNode::new(nodes, (0..).zip(node_of_entry)) }
-    }
-
-    /// Adds the entries of each node to its force, in rising order.
-    pub(crate) fn add(&self, crew: &Crew, entries: &[DVec3], forces: &mut [DVec3]) {
-        for_each_one(crew, forces, &|node, force| {
-            for &entry in self.entries.of(node) {
-                *force += entries[entry];
-            }
-        });
-    }
-}
-
-/// The entries of all nodes, sorted by node, and rising for each node.
+/// The entries of all nodes, such as forces that act on them, sorted by node, and rising for each node.
 pub(crate) struct EntriesOfNode {
     /// Where the entries of each node begin; the last number is where all end.
     starts: Vec<usize>,
@@ -126,6 +105,15 @@ impl EntriesOfNode {
             next[node as usize] += 1;
         }
         Self { starts, entries: sorted }
+    }
+
+    /// Adds those of some forces that act on each node to its own, in rising order.
+    pub(crate) fn add(&self, crew: &Crew, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(crew, forces, &|node, force| {
+            for &entry in self.of(node) {
+                *force += entries[entry];
+            }
+        });
     }
 
     /// The entries of a node.

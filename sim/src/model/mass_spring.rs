@@ -359,14 +359,14 @@ struct SpringForces {
     /// The relative stiffness of each spring; `None` if all are 1.
     parts: Option<Vec<f64>>,
     /// Adds up the forces of springs on each node.
-    gather: blocks::Gather,
+    gather: blocks::EntriesOfNode,
 }
 
 impl SpringForces {
     fn new(model: MassSpring, body: &Body) -> Self {
         let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
         let natural_length = model.springs.iter().map(length).collect();
-        let gather = blocks::Gather::new(body.len(), model.springs.iter().flatten().copied());
+        let gather = blocks::EntriesOfNode::new(body.len(), (0..).zip(model.springs.iter().flatten().copied()));
         Self { parts: model.parts(body), model, natural_length, gather }
     }
 

@@ -451,7 +451,7 @@ struct Elements {
     /// How the linear map of each element follows from its corners, if forces depend on it.
     maps: Option<Vec<AtRest>>,
     /// Adds up the forces on the corners of all elements for each node.
-    gather: blocks::Gather,
+    gather: blocks::EntriesOfNode,
 }
 
 /// The position and rotation of the equilibrium shape of an element.
@@ -474,7 +474,7 @@ impl Elements {
         let inertia = (0..elements.len())
             .map(|element| inertia(&elements[element], &rest[elements.range(element)], &body.mass))
             .collect();
-        let gather = blocks::Gather::new(body.len(), elements.indices().iter().copied());
+        let gather = blocks::EntriesOfNode::new(body.len(), (0..).zip(elements.indices().iter().copied()));
         let at_rest = |element: usize| AtRest::new(&rest[elements.range(element)], body.dimension);
         let maps = model.fits_maps().then(|| (0..elements.len()).map(at_rest).collect());
         let (solver, parts) = (model.solver(body.dimension), model.relative_stiffness(body));
