@@ -13,7 +13,7 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
-use super::general::{NONE, first_of};
+use super::general::{NONE, first_lost, first_of};
 use super::memory::Aligned;
 use super::stepper::{Pass, Passes, Stepper};
 use super::update::{NodeUpdate, NodeVector, Stage};
@@ -23,7 +23,6 @@ use crate::crew::Crew;
 use crate::lanes::{Lanes, Set, Work, each};
 use glam::DVec3;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Nodes for which one family is evaluated before the next, so that their data stay in the first-level cache. The size
 /// does not change any bit.
@@ -190,22 +189,14 @@ impl Stencil {
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
     fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
-        let (springs, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
-        let slabs = self.slabs.len();
-        let share = |me: usize| me * slabs / threads..(me + 1) * slabs / threads;
-        crew.run(&|me| {
-            for slab in share(me) {
-                lost.fetch_min(self.set.run(OneSlab { springs, slab, pass, around }), Ordering::Relaxed);
-            }
+        let (springs, slabs) = (self, self.slabs.len());
+        let lost = first_lost(crew, slabs, |_, own| {
+            own.map(|slab| self.set.run(OneSlab { springs, slab, pass, around })).fold(NONE, u32::min)
         });
-        if slabs > 1 {
-            crew.run(&|me| {
-                for slab in share(me).filter(|&slab| slab > 0) {
-                    lost.fetch_min(self.set.run(Deferred { springs, slab, pass, around }), Ordering::Relaxed);
-                }
-            });
-        }
-        let lost = lost.into_inner();
+        let of_deferred = first_lost(crew, slabs - 1, |_, own| {
+            own.map(|slab| self.set.run(Deferred { springs, slab: slab + 1, pass, around })).fold(NONE, u32::min)
+        });
+        let lost = lost.min(of_deferred);
         (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
     }
 }

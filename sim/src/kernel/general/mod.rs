@@ -25,7 +25,7 @@ use crate::law::{Law, RECORD, Reader};
 use crate::lists::IndexLists;
 use crate::tally::Tally;
 use glam::DVec3;
-use pass::{OfNodes, OnePart, SharedNodes};
+use pass::{OnePart, SharedNodes};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -317,36 +317,51 @@ impl<W: Law> General<W> {
         self.parts.len() > SMALL
     }
 
+    /// Calls `each` with each number that elements remember, and its place in the memory of the model.
+    fn each_number(&mut self, mut each: impl FnMut(&mut f64, usize)) {
+        let width = W::MEMORY;
+        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
+            let numbers = class.memory.as_mut_slice();
+            for (at, &element) in class.elements.iter().enumerate() {
+                for entry in 0..width {
+                    let number = &mut numbers[(at / MOST * width + entry) * MOST + at % MOST];
+                    each(number, element as usize * width + entry);
+                }
+            }
+        }
+    }
+
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
     fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
-        let (body, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
-        let of_nodes = OfNodes { of_node: self.law.of_node(), step: self.step };
-        let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
-        crew.run(&|me| {
-            for part in share(self.parts.len(), me) {
-                lost.fetch_min(
-                    self.set.run(OnePart { body, part, sums: &body.sums[me], pass, around, of_nodes }),
-                    Ordering::Relaxed,
-                );
-            }
+        let (body, step, of_node) = (self, self.step, self.law.of_node());
+        let lost = first_lost(crew, self.parts.len(), |me, parts| {
+            let one = |part| self.set.run(OnePart { body, part, sums: &body.sums[me], pass, around });
+            parts.map(one).fold(NONE, u32::min)
         });
-        let shared = self.shared.index.len() / MOST;
-        if shared > 0 {
-            crew.run(&|me| {
-                let blocks = share(shared, me);
-                let (shared, parts, is_large) = (&body.shared, &body.parts[..], body.is_large());
-                let work = SharedNodes { shared, parts, is_large, blocks, pass, around, of_nodes };
-                lost.fetch_min(self.set.run(work), Ordering::Relaxed);
-            });
-        }
-        let lost = lost.into_inner();
+        let of_shared = first_lost(crew, self.shared.index.len() / MOST, |_, blocks| {
+            let (shared, parts, is_large) = (&body.shared, &body.parts[..], body.is_large());
+            self.set.run(SharedNodes { shared, parts, is_large, blocks, pass, around, of_node, step })
+        });
+        let lost = lost.min(of_shared);
         (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
     }
 }
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// The first node that becomes too fast in `work`, which takes the number of each thread and its share of so many parts; [`NONE`] if none
+/// does.
+pub(super) fn first_lost(crew: &Crew, count: usize, work: impl Fn(usize, Range<usize>) -> u32 + Sync) -> u32 {
+    let (threads, lost) = (crew.threads(), AtomicU32::new(NONE));
+    if count > 0 {
+        crew.run(&|me| {
+            lost.fetch_min(work(me, me * count / threads..(me + 1) * count / threads), Ordering::Relaxed);
+        });
+    }
+    lost.into_inner()
+}
 
 /// The lower of two nodes: `one`, and the first of the lanes whose bits are set and that is not held.
 #[inline(always)]
@@ -361,30 +376,14 @@ pub(super) fn first_of(one: u32, lanes: u32, held: &[bool], index: impl Fn(usize
 impl<W: Law> Stepper for General<W> {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
         self.place(position, velocity);
-        let width = W::MEMORY;
-        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
-            let numbers = class.memory.as_mut_slice();
-            for (at, &element) in class.elements.iter().enumerate() {
-                for entry in 0..width {
-                    numbers[(at / MOST * width + entry) * MOST + at % MOST] = memory[element as usize * width + entry];
-                }
-            }
-        }
-        self.tally.load(memory.get(self.elements * width));
+        self.each_number(|number, at| *number = memory[at]);
+        self.tally.load(memory.get(self.elements * W::MEMORY));
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
         self.read(position, velocity);
-        let width = W::MEMORY;
-        for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
-            let numbers = class.memory.as_mut_slice();
-            for (at, &element) in class.elements.iter().enumerate() {
-                for entry in 0..width {
-                    memory[element as usize * width + entry] = numbers[(at / MOST * width + entry) * MOST + at % MOST];
-                }
-            }
-        }
-        self.tally.store(memory.get_mut(self.elements * width));
+        self.each_number(|number, at| memory[at] = *number);
+        self.tally.store(memory.get_mut(self.elements * W::MEMORY));
     }
 
     #[inline]

@@ -5,7 +5,7 @@ use super::{General, NONE, Part, RecordAddress, SUM, Shared, first_of};
 use crate::kernel::Around;
 use crate::kernel::memory::Aligned;
 use crate::kernel::stepper::Pass;
-use crate::kernel::update::{NodeUpdate, NodeVector, Stage};
+use crate::kernel::update::{NodeUpdate, NodeVector};
 use crate::lanes::{Lanes, MOST, Work, each};
 use crate::law::{Law, RECORD};
 use std::ops::Range;
@@ -18,16 +18,6 @@ pub(super) struct OnePart<'a, W> {
     pub(super) sums: &'a Aligned,
     pub(super) pass: Pass,
     pub(super) around: Around<'a>,
-    pub(super) of_nodes: OfNodes,
-}
-
-/// What acts on each node besides the sum of its elements.
-#[derive(Clone, Copy)]
-pub(super) struct OfNodes {
-    /// [`Law::of_node`].
-    pub(super) of_node: [f64; 2],
-    /// ΔT (s).
-    pub(super) step: f64,
 }
 
 impl<W: Law> Work for OnePart<'_, W> {
@@ -45,7 +35,8 @@ impl<W: Law> Work for OnePart<'_, W> {
                 Elements { part, sums, class, law, commit, tally, is_large }.add::<L>();
             }
         }
-        let own = Own::<L>::new(self.of_nodes, stage, number, self.around);
+        let update = NodeUpdate::<L>::new(stage, self.body.step, number, self.around);
+        let own = Own { update, of_node: self.body.law.of_node() };
         let (records, sums) = (part.records.pointer(), self.sums.pointer());
         let mut lost = NONE;
         for first in (0..part.own * MOST).step_by(L::WIDTH) {
@@ -90,16 +81,11 @@ unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
 /// The update of nodes by their records.
 struct Own<'a, L> {
     update: NodeUpdate<'a, L>,
-    stage: Stage,
+    /// [`Law::of_node`].
     of_node: [f64; 2],
 }
 
-impl<'a, L: Lanes> Own<'a, L> {
-    #[inline(always)]
-    fn new(OfNodes { of_node, step }: OfNodes, stage: Stage, number: u64, around: Around<'a>) -> Self {
-        Self { update: NodeUpdate::new(stage, step, number, around), stage, of_node }
-    }
-
+impl<L: Lanes> Own<'_, L> {
     /// Moves a vector of nodes by the forces of their elements, to which [`Law::of_node`] is added.
     ///
     /// # Safety
@@ -121,12 +107,13 @@ impl<'a, L: Lanes> Own<'a, L> {
             let force: [L; 3] =
                 each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
             let mut acceleration = [L::splat(0.0); 3];
-            if self.stage.loads_acceleration() {
+            let stage = self.update.stage();
+            if stage.loads_acceleration() {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = NodeVector { position, velocity, acceleration };
             let lost = self.update.advance(&mut nodes, force, inverse_mass, node);
-            if self.stage.stores_acceleration() {
+            if stage.stores_acceleration() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
             let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);
@@ -144,7 +131,10 @@ pub(super) struct SharedNodes<'a> {
     pub(super) blocks: Range<usize>,
     pub(super) pass: Pass,
     pub(super) around: Around<'a>,
-    pub(super) of_nodes: OfNodes,
+    /// [`Law::of_node`].
+    pub(super) of_node: [f64; 2],
+    /// ΔT (s).
+    pub(super) step: f64,
 }
 
 impl Work for SharedNodes<'_> {
@@ -152,8 +142,8 @@ impl Work for SharedNodes<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { shared, parts, is_large, blocks, pass: Pass { stage, number, .. }, around, of_nodes } = self;
-        let own = Own::<L>::new(of_nodes, stage, number, around);
+        let Self { shared, parts, is_large, blocks, pass: Pass { stage, number, .. }, around, of_node, step } = self;
+        let own = Own { update: NodeUpdate::<L>::new(stage, step, number, around), of_node };
         let record = |place: &RecordAddress| {
             parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD)
         };
