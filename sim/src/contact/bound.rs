@@ -1,4 +1,4 @@
-//! Obstacles as kernels see them: regions of possible contact, and floors, for which kernels compute contact themselves.
+//! Obstacles as kernels see them: regions of possible contact.
 
 use glam::DVec3;
 
@@ -19,19 +19,4 @@ pub(crate) enum Bound {
         /// The corner with the greatest (m).
         high: DVec3,
     },
-}
-
-/// A half-space that nodes bounce off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Floor {
-    /// Unit vector out of it.
-    pub(crate) normal: DVec3,
-    /// Distance of the surface from the origin along `normal` (m).
-    pub(crate) height: f64,
-    /// Restitution coefficient `e`.
-    pub(crate) restitution: f64,
-    /// Friction coefficient `μ`.
-    pub(crate) friction: f64,
-    /// The longest time for which friction acts on the path of a node (s); 0 if it acts on velocities only.
-    pub(crate) longest: f64,
 }

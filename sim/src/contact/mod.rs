@@ -34,7 +34,7 @@ mod step;
 mod surface;
 mod touches;
 
-pub(crate) use bound::{Bound, Floor};
+pub(crate) use bound::Bound;
 pub(crate) use end::End;
 pub(crate) use impulses::{Felt, Impulses};
 pub use impulses::{Reaction, Source};

@@ -1,6 +1,6 @@
 //! Obstacles, rebound and friction of nodes (paper, section 2, "Collision Processing").
 
-use super::{Bound, Contact, Floor, Shape};
+use super::{Bound, Contact, Shape};
 use crate::motion::{Motion, Pose};
 use glam::DVec3;
 
@@ -91,11 +91,11 @@ impl Obstacle {
 /// An obstacle at one moment.
 #[derive(Clone, Debug)]
 pub struct Placed<'a> {
-    obstacle: &'a Obstacle,
+    pub(crate) obstacle: &'a Obstacle,
     /// Its displacements at the start and at the end of the step, if it moves.
     moving: Option<[Pose; 2]>,
     /// The step (s).
-    step: f64,
+    pub(crate) step: f64,
 }
 
 impl Placed<'_> {
@@ -142,16 +142,9 @@ impl Placed<'_> {
         }
     }
 
-    /// This obstacle as a [`Floor`], if it is one and does not move.
-    pub(crate) fn still_floor(&self) -> Option<Floor> {
-        let &Obstacle { ref shape, restitution, friction, friction_of, .. } = self.obstacle;
-        match *shape {
-            Shape::Floor { normal, height } if self.moving.is_none() => {
-                let longest = if friction_of == FrictionOf::Path { self.step } else { 0.0 };
-                Some(Floor { normal, height, restitution, friction, longest })
-            }
-            _ => None,
-        }
+    /// Whether it is a floor that does not move.
+    pub(crate) fn is_still_floor(&self) -> bool {
+        self.moving.is_none() && matches!(self.obstacle.shape, Shape::Floor { .. })
     }
 
     /// The rebound of all nodes; see [`Self::rebound`]: each node found inside rebounds, wherever it came from. `acceleration` is the constant one of each node in the step

@@ -4,7 +4,7 @@ use super::held::Held;
 use super::stepper::{PartStepper, Rollback, Scheme};
 use super::{Around, Compiled, Conditions, Forces, Meeting, Push};
 use crate::body::Body;
-use crate::contact::{Bound, End, Floor, Obstacle, Placed, Source};
+use crate::contact::{Bound, End, Obstacle, Placed, Source};
 use crate::crew::Crew;
 use crate::dynamics::Dynamics;
 use crate::lanes::Set;
@@ -248,10 +248,7 @@ impl<'a> Met<'a> {
         first..first + self.count
     }
 
-    fn floor(&self) -> Option<Floor> {
-        match &self.placed[..] {
-            [one] => one.still_floor(),
-            _ => None,
-        }
+    fn floor(&self) -> Option<&Placed<'a>> {
+        self.placed.first().filter(|one| self.placed.len() == 1 && one.is_still_floor())
     }
 }

@@ -26,7 +26,7 @@ pub(crate) use shapes::strains;
 pub(crate) use stepper::{Scheme, Stepper};
 
 use crate::body::Body;
-use crate::contact::{Bound, Floor, Impulses};
+use crate::contact::{Bound, Impulses, Placed};
 use crate::lanes::Set;
 use crate::law::{ByLaw, Energy, Filled, Law};
 use crate::state::{Nodes, State};
@@ -181,7 +181,7 @@ pub(crate) struct Around<'a> {
     pub(crate) impulses: Option<&'a Impulses>,
     /// The only obstacle, if it is a floor that does not move. For nodes that moved at constant velocity the kernel
     /// then computes contact in lanes, with the same bits as `resolve`.
-    pub(crate) floor: Option<Floor>,
+    pub(crate) floor: Option<&'a Placed<'a>>,
     /// The nodes of parts that meet no obstacle.
     pub(crate) apart: &'a [Range<usize>],
     /// The nodes that grips hold; `None` without grips.

@@ -2,7 +2,7 @@
 //! contact.
 
 use super::{Around, Resolve};
-use crate::contact::{Bound, Floor, ROUND_OFF};
+use crate::contact::{Bound, FrictionOf, Obstacle, Placed, ROUND_OFF, Shape};
 use crate::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 
@@ -218,7 +218,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
         if inside == 0 {
             return;
         }
-        if let (Some(floor), false) = (&self.around.floor, self.stage.keeps_acceleration()) {
+        if let (Some(floor), false) = (self.around.floor, self.stage.keeps_acceleration()) {
             return rebound(floor, nodes, L::mask(inside));
         }
         let mut position = each!(3, axis => nodes.position[axis].to_array());
@@ -293,28 +293,32 @@ fn touch(
 /// The rebound from a floor of nodes that moved at constant velocity: the operations of `Obstacle::push_out` in the
 /// same order and with the same rounding.
 #[inline(always)]
-fn rebound<L: Lanes>(floor: &Floor, nodes: &mut NodeVector<L>, inside: L::Mask) {
+fn rebound<L: Lanes>(floor: &Placed<'_>, nodes: &mut NodeVector<L>, inside: L::Mask) {
+    let &Obstacle { shape: Shape::Floor { normal, height }, restitution, friction, friction_of, .. } = floor.obstacle
+    else {
+        return;
+    };
     let NodeVector { position, velocity, .. } = nodes;
     let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (zero, one, e) = (L::splat(0.0), L::splat(1.0), L::splat(floor.restitution));
-    let normal = each!(3, axis => L::splat(floor.normal[axis]));
-    let depth = L::splat(floor.height) - dot(normal, *position);
+    let (zero, one, e) = (L::splat(0.0), L::splat(1.0), L::splat(restitution));
+    let normal = each!(3, axis => L::splat(normal[axis]));
+    let depth = L::splat(height) - dot(normal, *position);
     let farthest = position[0].abs().max(position[1].abs().max(position[2].abs()));
-    let round_off = L::splat(ROUND_OFF) * (L::splat(floor.height.abs()) + farthest);
+    let round_off = L::splat(ROUND_OFF) * (L::splat(height.abs()) + farthest);
     let touches = L::both(inside, (-round_off).lt(depth));
     let approach = -dot(normal, *velocity);
-    let (height, speed) = (e * depth, e * approach);
+    let (rise, speed) = (e * depth, e * approach);
     let slip = each!(3, axis => velocity[axis] + normal[axis] * approach);
     let slip_speed = dot(slip, slip).sqrt();
-    let kept = (one - (L::splat(floor.friction) * (approach + speed)).div(slip_speed)).max(zero);
+    let kept = (one - (L::splat(friction) * (approach + speed)).div(slip_speed)).max(zero);
     let kept = kept.select(zero.lt(slip_speed), zero);
     let approaches = L::both(touches, zero.lt(approach));
     let is_deep = L::both(touches, zero.lt(depth));
     for axis in 0..3 {
         let out = position[axis] + normal[axis] * (depth * (one + e));
-        let mut bounced = position[axis] + normal[axis] * (depth + height);
-        if floor.longest > 0.0 {
-            let longest = L::splat(floor.longest);
+        let mut bounced = position[axis] + normal[axis] * (depth + rise);
+        if friction_of == FrictionOf::Path {
+            let longest = L::splat(floor.step);
             let touching = (one + e) * (L::splat(2.0) * depth.max(zero)).div(approach + (approach * approach).sqrt());
             let time = touching.select(touching.lt(longest), longest);
             bounced = bounced - slip[axis] * time * (one - kept);
@@ -360,12 +364,11 @@ fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{FrictionOf, Obstacle, Shape};
     use crate::lanes::{Set, Work};
     use crate::motion::Motion;
     use crate::noise::Noise;
 
-    struct Bounce<'a>(&'a Floor, [DVec3; MOST], [DVec3; MOST]);
+    struct Bounce<'a>(&'a Placed<'a>, [DVec3; MOST], [DVec3; MOST]);
 
     impl Work for Bounce<'_> {
         type Output = (usize, [[f64; MOST]; 3], [[f64; MOST]; 3]);
@@ -394,7 +397,7 @@ mod tests {
             let (shape, pivot) = (Shape::Floor { normal, height }, DVec3::ZERO);
             let friction_of = if round / 6 % 2 == 0 { FrictionOf::Path } else { FrictionOf::Velocity };
             let obstacle = Obstacle { shape, motion: Motion::Still, pivot, restitution, friction, friction_of };
-            let floor = obstacle.at(1.0, 0.1).still_floor().expect("a floor that stands still");
+            let floor = obstacle.at(1.0, 0.1);
             let position: [DVec3; MOST] = std::array::from_fn(|lane| {
                 let free = noise.vector() * 0.1 + normal * height;
                 if lane % 3 == 0 { free + normal * (height - normal.dot(free)) } else { free }
@@ -408,7 +411,7 @@ mod tests {
                 let (width, p, v) = set.run(Bounce(&floor, position, velocity));
                 for lane in 0..width {
                     let (mut at, mut speed) = (position[lane], velocity[lane]);
-                    obstacle.at(1.0, 0.1).rebound(&mut at, &mut speed, DVec3::ZERO);
+                    floor.rebound(&mut at, &mut speed, DVec3::ZERO);
                     let bits = |vector: DVec3| vector.to_array().map(f64::to_bits);
                     let of = |all: &[[f64; MOST]; 3]| all.map(|axis| axis[lane].to_bits());
                     assert_eq!((of(&p), of(&v)), (bits(at), bits(speed)), "{round} {lane} {floor:?}");
