@@ -2,9 +2,11 @@
 //!
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
-use super::end::{End, Ends};
+use super::end::End;
+use super::known::Known;
 use super::points::{ContactPoint, SLACK};
 use super::rule::{Law, Motion, Term, Touch};
+use super::stage::Stage;
 use super::surface::Surface;
 use super::touches::Touches;
 use super::{Obstacle, Side};
@@ -22,20 +24,18 @@ pub(super) struct Ground {
     number: usize,
     obstacle: Obstacle,
     law: Law,
-    /// What is known of its points. It only saves work.
-    known: Near,
-    /// What touches in a step.
-    touches: Touches,
 }
 
 /// Points that were near a plane, with the heights of all nodes of the surface then (m); without heights nothing
-/// is known.
+/// is known. It only saves work.
 #[derive(Clone, Debug, Default)]
-struct Near {
+pub(super) struct Near {
     points: Vec<u32>,
     heights: Vec<f64>,
     /// How far points may move towards the plane (m) until others may touch it.
     skin: f64,
+    /// What touches in this step.
+    touches: Touches,
 }
 
 /// A plane: all points with `normal · x = height`.
@@ -52,19 +52,18 @@ impl Plane {
 }
 
 impl Ground {
-    /// A body, which has a carried surface, and an obstacle; `None` if that is not a half-space.
-    pub(super) fn new(body: usize, surface: &Surface, (number, obstacle): (usize, &Obstacle)) -> Option<Self> {
-        obstacle.half_space(0.0)?;
-        let &Obstacle { restitution, friction, .. } = obstacle;
-        let law = Law { gap: surface.thickness, restitution, friction };
-        Some(Self {
-            body,
-            number,
-            obstacle: obstacle.clone(),
-            law,
-            known: Near::default(),
-            touches: Touches::default(),
-        })
+    /// The half-spaces that bodies with a carried surface meet.
+    pub(super) fn all(bodies: &[Arc<Body>], surfaces: &[Surface], obstacles: &[Obstacle]) -> Vec<Self> {
+        let carried = bodies.iter().zip(surfaces).enumerate().filter(|(_, (body, _))| body.meets_by_surface());
+        let all = carried.flat_map(|(body, (_, surface))| {
+            obstacles.iter().enumerate().filter_map(move |(number, obstacle)| {
+                obstacle.half_space(0.0)?;
+                let &Obstacle { restitution, friction, .. } = obstacle;
+                let law = Law { gap: surface.thickness, restitution, friction };
+                Some(Self { body, number, obstacle: obstacle.clone(), law })
+            })
+        });
+        all.collect()
     }
 
     fn plane(&self, time: f64) -> Plane {
@@ -84,10 +83,10 @@ impl Ground {
     }
 
     /// Lists the points that may touch the plane in a step, in order.
-    fn list(&mut self, surface: &Surface, [start, end]: [&[DVec3]; 2], plane: Plane) {
+    fn list(&self, near: &mut Near, surface: &Surface, [start, end]: [&[DVec3]; 2], plane: Plane) {
         /// A share of the thickness, and of the way of a step.
         const SKIN: [f64; 2] = [20.0, 16.0];
-        let Self { known: Near { points, heights, skin }, law, obstacle, .. } = self;
+        let (Self { law, obstacle, .. }, Near { points, heights, skin, .. }) = (self, near);
         let height = |position: &[DVec3], node: u32| plane.above(position[node as usize]);
         let nodes = &surface.nodes;
         let far = |way: f64, now: f64, other: f64| way.max((now - other).abs());
@@ -107,7 +106,8 @@ impl Ground {
 
     /// Finds the points that come nearer to the plane than the distance that is kept. Their feet are added to `feet`, with their motions.
     fn look(
-        &mut self,
+        &self,
+        near: &mut Near,
         surface: &Surface,
         [start, end]: [&[DVec3]; 2],
         interval: Interval,
@@ -115,10 +115,10 @@ impl Ground {
     ) {
         let plane = self.plane(interval.begin);
         let [from, to] = [interval.begin, interval.end].map(|time| self.obstacle.pose(time));
-        self.list(surface, [start, end], plane);
-        self.touches.clear();
-        let Touches { all, terms } = &mut self.touches;
-        for &point in &self.known.points {
+        self.list(near, surface, [start, end], plane);
+        near.touches.clear();
+        let Touches { all, terms } = &mut near.touches;
+        for &point in &near.points {
             let (nodes, weights) = surface.points.of(point as usize);
             let here = surface.points.place(point as usize, start);
             let distance = plane.above(here);
@@ -139,59 +139,37 @@ impl Ground {
             all.push(Touch { normal: plane.normal, distance, is_whole: true, drag: DVec3::ZERO, terms });
         }
     }
-}
 
-/// All bodies with half-spaces that they may meet.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Grounds {
-    all: Vec<Ground>,
-    /// The feet of the points that touch, at the end of a step (m).
-    feet: Vec<(DVec3, Motion)>,
-}
-
-impl Grounds {
-    /// The half-spaces that bodies with a carried surface meet.
-    pub(super) fn new(bodies: &[Arc<Body>], surfaces: &[Surface], obstacles: &[Obstacle]) -> Self {
-        let carried = bodies.iter().zip(surfaces).enumerate().filter(|(_, (body, _))| body.meets_by_surface());
-        let all = carried.flat_map(|(body, (_, surface))| {
-            obstacles.iter().enumerate().filter_map(move |obstacle| Ground::new(body, surface, obstacle))
-        });
-        Self { all: all.collect(), feet: Vec::new() }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.all.is_empty()
-    }
-
-    /// The way (m) for which surely nothing touches; `None` if that is not known.
-    pub(super) fn clear(&self, surfaces: &[Surface], position: &[DVec3]) -> Option<f64> {
-        self.all.iter().try_fold(f64::INFINITY, |least, ground| Some(least.min(ground.clear(surfaces, position)?)))
-    }
-
-    /// Adds the points of surfaces that touch half-spaces at a time (s), with positions of nodes (m).
+    /// Adds the points of its surface that touch it at a time (s), with positions of nodes (m).
     pub(super) fn points(&self, surfaces: &[Surface], position: &[DVec3], time: f64, found: &mut Vec<ContactPoint>) {
-        for ground in &self.all {
-            let (plane, points, from) =
-                (ground.plane(time), &surfaces[ground.body].points, Side::Obstacle(ground.number));
-            let places = (0..points.len()).map(|point| points.place(point, position));
-            let touching = places.filter(|&at| plane.above(at) < ground.law.gap * (1.0 + SLACK));
-            found.extend(touching.map(|at| ContactPoint { from, on: ground.body, at }));
-        }
+        let (plane, points, from) = (self.plane(time), &surfaces[self.body].points, Side::Obstacle(self.number));
+        let places = (0..points.len()).map(|point| points.place(point, position));
+        let touching = places.filter(|&at| plane.above(at) < self.law.gap * (1.0 + SLACK));
+        found.extend(touching.map(|at| ContactPoint { from, on: self.body, at }));
     }
+}
 
-    /// Corrects positions and velocities at the end of a step, in the order of bodies, half-spaces and points.
-    pub(super) fn resolve(&mut self, surfaces: &[Surface], end: &End<'_>, ends: &mut Ends) {
-        let Self { all, feet } = self;
+impl Stage {
+    /// Lets surfaces meet half-spaces at the end of a step, in the order of bodies, half-spaces and points.
+    pub(super) fn meet_grounds(&self, known: &mut Known, end: &End<'_>) {
+        let Known { ends, near, feet, .. } = known;
+        if self.grounds.is_empty() {
+            return;
+        }
+        near.resize(self.grounds.len(), Near::default());
         feet.clear();
         let places = [&ends.start[..], &ends.position];
-        all.iter_mut().for_each(|ground| ground.look(&surfaces[ground.body], places, end.interval, feet));
+        for (ground, near) in self.grounds.iter().zip(&mut *near) {
+            ground.look(near, &self.surfaces[ground.body], places, end.interval, feet);
+        }
         let count = ends.position.len();
         ends.position.extend(feet.iter().map(|(foot, _)| foot));
         ends.motion.extend(feet.iter().map(|(_, motion)| motion));
-        for Ground { body, number, law, touches, .. } in all {
-            ends.push(touches, *law, [Side::Body(*body), Side::Obstacle(*number)], count as u32, end);
+        for (Ground { body, number, law, .. }, near) in self.grounds.iter().zip(near) {
+            ends.push(&near.touches, *law, [Side::Body(*body), Side::Obstacle(*number)], count as u32, end);
         }
         ends.position.truncate(count);
         ends.motion.truncate(count);
+        ends.go_on(end);
     }
 }

@@ -8,7 +8,6 @@ use super::stage::Stage;
 use crate::motion::Interval;
 use crate::state::Nodes;
 use glam::DVec3;
-use std::sync::PoisonError;
 
 impl Stage {
     /// Chooses the pairs of surfaces that are near each other, and returns the way (m) of any two until others may meet.
@@ -50,7 +49,7 @@ impl Stage {
         if self.contacts.bodies.iter().any(|body| body.itself) {
             return None;
         }
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.known.lock();
         let Known { now: places, extents, order, .. } = &mut *known;
         places.clear();
         places.extend_from_slice(at.position);
@@ -67,8 +66,11 @@ impl Stage {
         order.extend(0..extents.len());
         order
             .sort_unstable_by(|&one, &other| extents[one].low.x.total_cmp(&extents[other].low.x).then(one.cmp(&other)));
-        let clear = self.grounds.lock().unwrap_or_else(PoisonError::into_inner).clear(&self.surfaces, places)?;
-        let mut speed = bearable(clear, 0.0);
+        let clear = self
+            .grounds
+            .iter()
+            .try_fold(f64::INFINITY, |least, ground| Some(least.min(ground.clear(&self.surfaces, places)?)));
+        let mut speed = bearable(clear?, 0.0);
         for (at, &one) in order.iter().enumerate() {
             for &other in &order[at + 1..] {
                 // No later one is nearer.

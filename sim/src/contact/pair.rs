@@ -4,7 +4,7 @@ use super::batch::Found;
 use super::extent::{Extent, near, sweep};
 use super::features::Kind;
 use super::rule::Law;
-use super::shown::{Seen, Shown};
+use super::shown::Seen;
 use super::sleepers::Sleepers;
 use super::surface::{Placed, Surface};
 use super::touches::Touches;
@@ -109,9 +109,8 @@ impl Pair {
             let mut found = Vec::new();
             sweep(sides, reach, axes, |features| found.push(features));
             if self.of[0] == self.of[1] {
-                let mut at = Shown::default();
-                at.place(one.surface, &seen.stage.rest);
-                let rest = Placed { surface: one.surface, at: &at.points };
+                let at: Vec<_> = one.surface.places(&seen.stage.rest).collect();
+                let rest = Placed { surface: one.surface, at: &at };
                 found.retain(|&features| is_free(one.surface, kind, features));
                 kind.find([rest; 2], &found, &mut self.look.found);
                 let mut far = self.look.found.iter().map(|found| found.distance > 2.0 * self.law.gap);

@@ -6,7 +6,6 @@ use super::pair::Pair;
 use super::shown::{Seen, Shown};
 use super::stage::Stage;
 use glam::DVec3;
-use std::sync::PoisonError;
 
 /// A place where a body touches an obstacle, another body or itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +37,7 @@ impl Stage {
         for pair in &mut pairs {
             self.points_of(pair, &seen, &places, &mut found);
         }
-        let grounds = self.grounds.lock().unwrap_or_else(PoisonError::into_inner);
-        grounds.points(&self.surfaces, &places, time, &mut found);
+        self.grounds.iter().for_each(|ground| ground.points(&self.surfaces, &places, time, &mut found));
         found
     }
 

@@ -2,18 +2,18 @@
 
 use super::cross::crossings;
 use super::extent::Extent;
-use super::ground::Grounds;
-use super::known::Known;
+use super::ground::Ground;
+use super::known::Memory;
 use super::rule::Law;
 use super::surface::{Placed, Surface};
 use super::{Contacts, Obstacle, PairContact, Side};
 use crate::body::Body;
 use crate::motion::Interval;
 use glam::DVec3;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// The surfaces of a world, and what is known of their places. What is known only saves work: it changes no bit of what a step does.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Stage {
     pub(super) contacts: Contacts,
     /// Of the bodies, then of obstacles with an extent. Their nodes are numbered as in `nodes`, and the points of obstacles after them.
@@ -25,8 +25,8 @@ pub(crate) struct Stage {
     /// Of each of these its position at rest (m) and 1/m (1/kg).
     pub(super) rest: Vec<DVec3>,
     pub(super) inverse_mass: Vec<f64>,
-    pub(super) known: Mutex<Known>,
-    pub(super) grounds: Mutex<Grounds>,
+    pub(super) grounds: Vec<Ground>,
+    pub(super) known: Memory,
 }
 
 /// An obstacle with an extent, and its points at the start (m).
@@ -38,23 +38,6 @@ pub(super) struct Solid {
     points: Vec<DVec3>,
     /// The greatest speed of its points (m/s).
     pub(super) greatest_speed: f64,
-}
-
-impl Clone for Stage {
-    fn clone(&self) -> Self {
-        let Self { contacts, surfaces, bodies, obstacles, rest, inverse_mass, nodes, grounds, .. } = self;
-        Self {
-            contacts: contacts.clone(),
-            surfaces: surfaces.clone(),
-            bodies: *bodies,
-            obstacles: obstacles.clone(),
-            rest: rest.clone(),
-            inverse_mass: inverse_mass.clone(),
-            nodes: nodes.clone(),
-            known: Mutex::default(),
-            grounds: Mutex::new(grounds.lock().unwrap_or_else(PoisonError::into_inner).clone()),
-        }
-    }
 }
 
 impl Stage {
@@ -85,16 +68,15 @@ impl Stage {
             let greatest_speed = obstacle.motion.greatest_speed(far);
             solids.push(Solid { number, obstacle: obstacle.clone(), points, greatest_speed });
         }
-        let grounds = Mutex::new(Grounds::new(bodies, &surfaces, obstacles));
-        let (contacts, bodies, known) = (contacts.clone(), bodies.len(), Mutex::default());
+        let grounds = Ground::all(bodies, &surfaces, obstacles);
+        let (contacts, bodies, known) = (contacts.clone(), bodies.len(), Memory::default());
         Self { contacts, surfaces, bodies, obstacles: solids, nodes, rest, inverse_mass, known, grounds }
     }
 
     /// Whether two surfaces can meet, or a surface and a half-space.
     pub(crate) fn can_meet(&self) -> bool {
-        let has_grounds = !self.grounds.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
         let meets_itself = self.contacts.bodies.iter().any(|body| body.itself);
-        self.bodies > 0 && (has_grounds || meets_itself || self.surfaces.len() > 1)
+        self.bodies > 0 && (!self.grounds.is_empty() || meets_itself || self.surfaces.len() > 1)
     }
 
     pub(super) fn side(&self, surface: usize) -> Side {

@@ -11,13 +11,12 @@ use super::touches::Touches;
 use super::{Side, Source};
 use crate::crew::Crew;
 use glam::DVec3;
-use std::sync::PoisonError;
 
 impl Stage {
     /// Corrects positions and velocities at the end of a step. `held` are the nodes that grips hold, each with the number of its grip: they
     /// stay as they are.
     pub(crate) fn resolve(&self, mut end: End<'_>, held: impl Iterator<Item = [usize; 2]>, crew: &Crew) {
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.known.lock();
         let (known, interval) = (&mut *known, end.interval);
         let Known { last, ends, .. } = known;
         std::mem::swap(last, &mut ends.start);
@@ -32,11 +31,7 @@ impl Stage {
         let numbers = held.map(|[grip, node]| (grip, self.nodes.binary_search(&(node as u32))));
         ends.held.extend(numbers.filter_map(|(grip, node)| Some([node.ok()?, grip])));
         ends.take(&self.inverse_mass, &end);
-        let mut grounds = self.grounds.lock().unwrap_or_else(PoisonError::into_inner);
-        if !grounds.is_empty() {
-            grounds.resolve(&self.surfaces, &end, ends);
-            ends.go_on(&end);
-        }
+        self.meet_grounds(known, &end);
         self.go(known, crew);
         self.meet(known, &end, crew);
         known.ends.give(&mut end);
