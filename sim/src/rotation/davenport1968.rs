@@ -89,12 +89,8 @@ fn eigen(mut m: [[f64; 4]; 4]) -> ([f64; 4], [DVec4; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rotation::moment;
+    use crate::rotation::{corners, moment};
     use glam::DVec3;
-
-    fn cube() -> Vec<DVec3> {
-        (0..8u32).map(|bit| DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1) - 0.5))).collect()
-    }
 
     fn near(a: DQuat, b: DQuat) -> bool {
         a.dot(b).abs() > 1.0 - 1e-14
@@ -102,7 +98,7 @@ mod tests {
 
     #[test]
     fn finds_every_rotation_from_anywhere() {
-        let rest: Vec<_> = cube().iter().map(|&r| r * DVec3::new(1.0, 0.7, 0.4)).collect();
+        let rest = corners([1.0, 0.7, 0.4]);
         let mut turn = DQuat::from_xyzw(0.1, -0.2, 0.3, 0.9).normalize();
         for _ in 0..200 {
             turn = (turn * DQuat::from_xyzw(0.5, 0.3, -0.7, 0.4)).normalize();
@@ -117,7 +113,7 @@ mod tests {
         assert_eq!(optimum(DMat3::ZERO, last), last);
         assert_eq!(optimum(DMat3::from_cols_array(&[f64::NAN; 9]), last), last);
         // On a line: the last rotation about the line is kept, and the line itself is matched.
-        let rest = cube();
+        let rest = corners([1.0; 3]);
         let line = DVec3::new(1.0, 2.0, -0.5).normalize();
         let a = moment(&rest, rest.iter().map(|r| line * r.x));
         let found = optimum(a, DQuat::IDENTITY);
@@ -128,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_mirrored_or_inverted_cube_has_some_optimum_and_always_the_same() {
-        let rest = cube();
+        let rest = corners([1.0; 3]);
         for mirror in [DVec3::new(1.0, 1.0, -1.0), DVec3::splat(-1.0)] {
             let a = moment(&rest, rest.iter().map(|&r| r * mirror));
             let found = optimum(a, DQuat::IDENTITY);

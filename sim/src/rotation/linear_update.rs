@@ -36,21 +36,14 @@ fn cross(w: DVec3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rotation::{moment, torque};
+    use crate::rotation::{corners, moment, torque};
     use glam::DQuat;
 
-    fn box_corners() -> Vec<DVec3> {
-        (0..8u32)
-            .map(|bit| {
-                DVec3::new(0.5, 0.35, 0.2)
-                    * DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1) * 2.0 - 1.0))
-            })
-            .collect()
-    }
+    const SIDES: [f64; 3] = [1.0, 0.7, 0.4];
 
     #[test]
     fn one_pass_leaves_no_torque() {
-        let rest = box_corners();
+        let rest = corners(SIDES);
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.5);
         let now: Vec<_> = rest.iter().map(|&r| turn * (r * DVec3::new(1.2, 0.8, 1.1))).collect();
         let at_rest = moment(&rest, now);
@@ -61,7 +54,7 @@ mod tests {
 
     #[test]
     fn a_spinning_element_swells_as_printed() {
-        let rest = box_corners();
+        let rest = corners(SIDES);
         let mut matrix = DMat3::IDENTITY;
         for step in 1..=1000 {
             let turn = DQuat::from_axis_angle(DVec3::Z, 0.02 * f64::from(step));
@@ -75,7 +68,7 @@ mod tests {
 
     #[test]
     fn what_has_no_axis_keeps_its_matrix() {
-        let rest = box_corners();
+        let rest = corners(SIDES);
         for flatten in [DVec3::ZERO, DVec3::X] {
             let at_rest = moment(&rest, rest.iter().map(|&r| r * flatten));
             assert_eq!(update(at_rest, DMat3::IDENTITY, 3), DMat3::IDENTITY);

@@ -95,13 +95,7 @@ pub fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DM
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rotation::moment;
-
-    fn corners(x: f64, y: f64, z: f64) -> Vec<DVec3> {
-        (0..8u32)
-            .map(|bit| DVec3::new(x, y, z) * DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1) - 0.5)))
-            .collect()
-    }
+    use crate::rotation::{corners, moment};
 
     fn angle_error(true_turn: DQuat, found: DQuat) -> f64 {
         // 2 asin of the vector part: accurate for small angles, where acos of the scalar part is not.
@@ -116,8 +110,7 @@ mod tests {
 
     /// The error of the rotation (rad) of a box that is turned by an angle (degrees), after some passes.
     fn error(sides: [f64; 3], axis: DVec3, degrees: f64, passes: u32, reading: Reading) -> f64 {
-        let [x, y, z] = sides;
-        let rest = corners(x, y, z);
+        let rest = corners(sides);
         let turned = DQuat::from_axis_angle(axis.normalize(), degrees.to_radians());
         let a = moment(&rest, rest.iter().map(|&r| turned * r));
         angle_error(turned, iterate(a, DQuat::IDENTITY, passes, reading).rotation)
@@ -180,7 +173,7 @@ mod tests {
     #[test]
     fn a_printed_system_and_the_vector_form_agree() {
         // Eq. (15) written out as printed, against the matrix form.
-        let rest = corners(1.0, 0.7, 0.4);
+        let rest = corners([1.0, 0.7, 0.4]);
         let now: Vec<_> =
             rest.iter().map(|r| DVec3::new(r.x * 1.1 + 0.2 * r.y, r.y - 0.1 * r.z, r.z + 0.3 * r.x)).collect();
         let sum =

@@ -71,6 +71,13 @@ pub(crate) fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
     }
 }
 
+/// The corners of a box about the origin with these sides (m).
+#[cfg(test)]
+fn corners(sides: [f64; 3]) -> Vec<DVec3> {
+    let share = |corner: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(corner >> axis & 1) - 0.5));
+    (0..8).map(|corner| DVec3::from(sides) * share(corner)).collect()
+}
+
 /// `tr A`.
 fn trace(a: DMat3) -> f64 {
     a.x_axis.x + a.y_axis.y + a.z_axis.z
