@@ -43,7 +43,7 @@ impl Stage {
 
     fn points_of(&self, pair: &mut Pair, seen: &Seen<'_>, places: &[DVec3], found: &mut Vec<ContactPoint>) {
         pair.reach(seen, 0.5 * SLACK * pair.law.gap);
-        let ([on, other], second) = (pair.of, self.first_node(pair.of[1]));
+        let ([on, other], second) = (pair.of, self.surfaces[pair.of[1]].range().start as u32);
         let first = found.len();
         for kinds in [Kind::POINTS, Kind::EDGES] {
             pair.look(kinds, seen);

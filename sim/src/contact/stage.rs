@@ -136,12 +136,6 @@ impl Stage {
         }
     }
 
-    /// The first node of a surface; of obstacles the number after those of nodes.
-    pub(super) fn first_node(&self, surface: usize) -> u32 {
-        let nodes = self.surfaces[..self.bodies].get(surface).map(|body| &body.nodes);
-        nodes.and_then(|nodes| nodes.first().copied()).unwrap_or(self.nodes.len() as u32)
-    }
-
     /// The velocity (m/s) of the surface of a round obstacle, at a way `out` (m) from a point of its axis at the start of a step, beside that of
     /// this point.
     pub(super) fn drag(&self, surface: usize, interval: Interval, at: DVec3, out: DVec3) -> DVec3 {

@@ -83,7 +83,8 @@ impl Stage {
                 crew.each(pairs, |_, pair| pair.look(kinds, &seen));
                 for pair in &*pairs {
                     let sides = pair.of.map(|surface| self.side(surface));
-                    ends.push(&pair.look.touches, pair.law, sides, self.first_node(pair.of[1]), end);
+                    let second = self.surfaces[pair.of[1]].range().start as u32;
+                    ends.push(&pair.look.touches, pair.law, sides, second, end);
                 }
                 pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
             }
