@@ -56,9 +56,10 @@ impl ByComposition {
     pub fn new(composition: Composition) -> Self {
         Self { composition, evaluation: Evaluation::default() }
     }
+}
 
-    /// Computes a step without its end: without limit, contact and kinematic constraints.
-    pub fn fly(&mut self, step: &Step<'_>, state: &State, next: &mut State) {
+impl Method for ByComposition {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
         let Self { composition, evaluation } = self;
         let time = step.interval.step;
         next.position.copy_from_slice(&state.position);
@@ -81,12 +82,6 @@ impl ByComposition {
                 *velocity += acceleration * kick;
             }
         }
-    }
-}
-
-impl Method for ByComposition {
-    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
-        self.fly(step, state, next);
         step.finish(state, next)
     }
 
