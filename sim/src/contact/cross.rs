@@ -9,7 +9,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 /// The pairs of facets of two surfaces, or of one with itself, that cross at these places, in order. A side that passes through an edge
 /// between two triangles crosses both. A facet crosses a round obstacle where it is nearer to its axis than the radius.
 pub(crate) fn crossings([one, other]: [Placed<'_>; 2]) -> Vec<[u32; 2]> {
-    let radius = one.radius() + other.radius();
+    let radius = one.surface.radius() + other.surface.radius();
     let mut found = near_facets([one, other], radius);
     let is_same = std::ptr::eq(one.surface, other.surface);
     found.retain(|&[first, second]| {

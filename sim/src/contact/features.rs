@@ -103,41 +103,37 @@ fn point_facet(
     let facet = &surface.facets[facet as usize];
     let (here, place) = (one.point(point), |corner: u32| other.point(corner));
     let closest = |(rests, is_least)| Closest { here, way, shares: [[1.0, 0.0, 0.0], shares], rests, is_least };
-    let on = On::of(part);
-    if on == On::Inside {
-        return closest((0.0, true));
-    }
+    // Whether contact is counted here, the corners around the place, and the ends of the side or the corner twice.
+    let (is_owned, around, on) = match On::of(part) {
+        On::Inside => return closest((0.0, true)),
+        On::Side(side) => {
+            let wings = &surface.wings[facet.sides[side] as usize];
+            (facet.owns_sides[side], wings, [side, (side + 1) % 3])
+        }
+        On::Corner(corner) => {
+            let number = facet.corners[corner] as usize;
+            let is_first = counts_corners && (!is_same || (point as usize) < number);
+            (is_first && facet.owns_corners[corner], &surface.rings[number], [corner; 2])
+        }
+    };
     let corners = facet.corners.map(place);
     let there: DVec3 = corners.iter().zip(shares).map(|(&corner, share)| corner * share).sum();
     // How far the point has to move until another part of the facet is the nearest. No way to a corner is towards the point.
-    let leaves = |on: &[usize]| {
+    let leaves = || {
         let others = corners[..facet.count as usize].iter().enumerate().filter(|(corner, _)| !on.contains(corner));
         let inwards = others.map(|(_, &corner)| {
             let (along, squared) = (way.dot(corner - there).min(0.0), (corner - there).length_squared());
             if squared > 0.0 { along * along / squared } else { 0.0 }
         });
-        let ends = on.iter().filter(|_| on.len() > 1).map(|&end| corners[end].distance_squared(there));
+        let ends = on.iter().filter(|_| on[0] != on[1]).map(|&end| corners[end].distance_squared(there));
         ends.chain(inwards).fold(f64::INFINITY, f64::min).sqrt()
     };
-    let rest = |is_owned: bool, around: &[u32], on: &[usize]| {
+    let lean = || {
         let ring = one.surface.rings[point as usize].iter().map(|&at| one.point(at));
-        let lean =
-            || closest::lean(way, there, around.iter().map(|&at| place(at))).max(closest::lean(-way, here, ring));
-        let (beyond, is_least) = if is_owned { counts(lean(), way) } else { (f64::INFINITY, false) };
-        (if beyond > 0.0 { (beyond.min(leaves(on)) / LEVER).max(f64::MIN_POSITIVE) } else { 0.0 }, is_least)
+        closest::lean(way, there, around.iter().map(|&at| place(at))).max(closest::lean(-way, here, ring))
     };
-    closest(match on {
-        On::Inside => (0.0, true),
-        On::Side(side) => {
-            let wings = &surface.wings[facet.sides[side] as usize];
-            rest(facet.owns_sides[side], wings, &[side, (side + 1) % 3])
-        }
-        On::Corner(corner) => {
-            let number = facet.corners[corner] as usize;
-            let is_first = counts_corners && (!is_same || (point as usize) < number);
-            rest(is_first && facet.owns_corners[corner], &surface.rings[number], &[corner])
-        }
-    })
+    let (beyond, is_least) = if is_owned { counts(lean(), way) } else { (f64::INFINITY, false) };
+    closest((if beyond > 0.0 { (beyond.min(leaves()) / LEVER).max(f64::MIN_POSITIVE) } else { 0.0 }, is_least))
 }
 
 /// Edges that cross each other.

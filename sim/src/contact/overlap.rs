@@ -61,9 +61,9 @@ impl Surfaces {
                 let of = [one, other].map(|number| stage.side(number));
                 let [mine, theirs] = [one, other].map(|number| stage.placed(&moment, number));
                 let (round, keeps) = (round_off(&moment, [one, other]), stage.gap(one, other));
-                let is_round = theirs.radius() > 0.0;
+                let is_round = theirs.surface.radius() > 0.0;
                 let reach = if is_round || one == other { round } else { round.max(NEAR * keeps) };
-                if moment.distance([one, other]) > theirs.radius() + reach
+                if moment.distance([one, other]) > theirs.surface.radius() + reach
                     || !wanted(of)
                     || stage.law(one, other).is_none()
                 {
@@ -83,29 +83,24 @@ impl Surfaces {
                     Overlap { of, node, depth, keeps }
                 }));
             }
-            found.extend(self.below(one, position, &moment, time).filter(|overlap| wanted(overlap.of)));
+            found.extend(self.below(one, position, &moment, time).into_iter().filter(|overlap| wanted(overlap.of)));
         }
         found
     }
 
     /// The half-spaces that a body reaches into: with its carried surface, or its nodes.
-    fn below<'a>(
-        &'a self,
-        body: usize,
-        position: &'a [DVec3],
-        moment: &'a Moment,
-        time: f64,
-    ) -> impl Iterator<Item = Overlap> + 'a {
+    fn below(&self, body: usize, position: &[DVec3], moment: &Moment, time: f64) -> Vec<Overlap> {
         let first: usize = self.bodies[..body].iter().map(|body| body.len()).sum();
         let is_carried = self.bodies[body].carried.is_some();
         let nodes = &position[first..first + self.bodies[body].len()];
         let points = if is_carried { &moment.at[body][..] } else { nodes };
-        self.obstacles.iter().enumerate().filter_map(move |(number, obstacle)| {
+        let below = self.obstacles.iter().enumerate().filter_map(|(number, obstacle)| {
             let (normal, height) = obstacle.half_space(time)?;
             let (point, depth) = self.deepest_below(body, points, normal, height)?;
             let node = if is_carried { self.node(body, point as u32) } else { first + point };
             Some(Overlap { of: [Side::Body(body), Side::Obstacle(number)], node, depth, keeps: 0.0 })
-        })
+        });
+        below.collect()
     }
 
     /// The point of a body that lies deepest in a half-space, and its depth (m); `None` if it reaches into it by round-off at most.
@@ -140,7 +135,7 @@ fn round_off(moment: &Moment, of: [usize; 2]) -> f64 {
 
 /// Whether two surfaces are nearer than a distance (m) above zero, or overlap.
 pub(super) fn is_nearer(of: [Placed<'_>; 2], reach: f64) -> bool {
-    let radius = of[1].radius();
+    let radius = of[1].surface.radius();
     let is_near = |&facets: &[u32; 2]| between(of, facets, radius).depth > -reach;
     near_facets(of, radius + reach).iter().any(is_near)
         || !inside(of[0].at, of[1]).is_empty()
@@ -156,7 +151,7 @@ fn meeting_itself(of: Placed<'_>, round: f64) -> Option<Deepest> {
 
 /// What lies deepest of two surfaces, if they are nearer than a reach (m). Depths are equal to a round-off (m).
 fn deepest(of: [Placed<'_>; 2], round: f64, reach: f64) -> Option<Deepest> {
-    let radius = of[1].radius();
+    let radius = of[1].surface.radius();
     let facets = near_facets(of, radius + reach).into_iter().map(|facets| between(of, facets, radius));
     let near = facets.filter(|deepest| deepest.depth >= -reach).reduce(deeper);
     let within = [[0, 1], [1, 0]].into_iter().filter_map(|sides| deepest_point(of, sides, radius));

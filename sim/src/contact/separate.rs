@@ -112,7 +112,7 @@ impl Search<'_> {
             let (theirs, gap) = (self.of.stage.placed(self.moment, other), self.of.stage.gap(self.body, other));
             if is_nearer([moved, theirs], gap) {
                 // With a reserve for round-off.
-                exit = exit.max((last(theirs.at) - back + theirs.radius() + gap) * (1.0 + 1e-12));
+                exit = exit.max((last(theirs.at) - back + theirs.surface.radius() + gap) * (1.0 + 1e-12));
             }
         }
         for obstacle in &self.of.obstacles {
@@ -151,7 +151,7 @@ impl Search<'_> {
             }
             let [here, there] = [self.body, other].map(|surface| self.moment.extents[surface].middle());
             add((here - there).normalize());
-            for [first, second] in near_facets([mine, theirs], theirs.radius()) {
+            for [first, second] in near_facets([mine, theirs], theirs.surface.radius()) {
                 add(Corners::of(theirs, second).normal());
                 add(-Corners::of(mine, first).normal());
             }

@@ -154,7 +154,7 @@ impl Stage {
         let pairs = (0..self.bodies).flat_map(|one| (one..self.surfaces.len()).map(move |other| [one, other]));
         let count = |of: [usize; 2]| {
             let both = of.map(|number| self.placed(&moment, number));
-            let is_near = moment.distance(of) <= both[0].radius() + both[1].radius();
+            let is_near = moment.distance(of) <= both[0].surface.radius() + both[1].surface.radius();
             let count = if is_near && self.law(of[0], of[1]).is_some() { crossings(both).len() } else { 0 };
             (of.map(|number| self.side(number)), count)
         };

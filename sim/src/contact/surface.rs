@@ -53,11 +53,6 @@ impl Placed<'_> {
         self.surface.facets[facet as usize].used()
     }
 
-    /// The radius of a round obstacle (m); zero of other surfaces.
-    pub(super) fn radius(&self) -> f64 {
-        self.surface.radius()
-    }
-
     pub(super) fn point(&self, point: u32) -> DVec3 {
         self.at[point as usize]
     }
