@@ -246,12 +246,4 @@ mod tests {
             assert_eq!((x.cross(y).dot(z), points_up), (8.0, DVec3::Y * 2.0), "{up}");
         }
     }
-
-    #[test]
-    fn parts_share_no_node() {
-        let lists = |lists: &[&[u32]]| parts(8, &lists.iter().copied().collect());
-        assert_eq!(lists(&[&[0, 1, 2], &[3, 4], &[5, 6, 7]]), 3);
-        assert_eq!(lists(&[&[5, 6, 7], &[4, 3], &[2, 1, 0], &[7, 0], &[2, 4]]), 1);
-        assert_eq!(lists(&[&[7, 6], &[5, 4], &[6, 5], &[0, 1, 2, 3]]), 2);
-    }
 }

@@ -53,17 +53,3 @@ pub(super) fn text(path: &Path) -> Option<&'static str> {
     let path = parts.join("/");
     TEXTS.iter().find(|(known, _)| *known == path).map(|(_, text)| *text)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::NAMES;
-    use crate::scene::figure::Figure;
-
-    #[test]
-    fn every_figure_of_the_program_is_sound() {
-        for name in NAMES {
-            assert_eq!(Figure::built_in(name).map(|figure| figure.name), Some(name.to_owned()));
-        }
-        assert!(Figure::built_in("fig5").is_none());
-    }
-}

@@ -279,27 +279,3 @@ impl fmt::Display for MeshSummary {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_surface_is_described_with_all_its_fillings() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hare.ply");
-        let mesh = MeshSummary::read(&path, &Limits::default()).unwrap();
-        let text = mesh.to_string();
-        for words in ["6 876 points, 13 748 triangles", "closed, volume 0.02", "1 separate piece", "20 cells of 0.03"] {
-            assert!(text.contains(words), "{words}: {text}");
-        }
-        assert!(!text.contains("flaws") && !text.contains("mended"), "{text}");
-        assert_eq!(mesh.fault(), None, "{text}");
-        let json = serde_json::to_value(&mesh).unwrap();
-        let fills = json["surface"]["fills"].as_array().unwrap();
-        let names: Vec<_> = fills.iter().map(|fill| fill["with"].as_str().unwrap()).collect();
-        assert_eq!(names, ["cubes", "graded", "tetrahedra", "polyhedra"]);
-        for fill in fills {
-            assert!(fill["elements"].as_u64() > Some(500) && fill["parts"] == 1 && fill["error"].is_null(), "{fill}");
-        }
-    }
-}
