@@ -2,6 +2,7 @@
 
 use super::block::Block;
 use super::random;
+use crate::scene::file::Lattice;
 use crate::sim::IndexLists;
 use glam::DVec3;
 
@@ -13,22 +14,16 @@ pub(super) fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
     cell.iter().map(|&node| nodes[node as usize]).sum::<DVec3>() / 8.0
 }
 
-/// Moves the nodes of a lattice at random, each by up to `part` of a cell's shortest side. Nodes on the surface move only
+/// Moves the nodes of a lattice at random, each by up to a part of a cell's shortest side. Nodes on the surface move only
 /// along it, and the centres of cells stay in place.
 ///
 /// Displacements of an element that becomes flat or inverted are halved until no such element is left. The regular
 /// lattice has none, so this ends.
-pub(super) fn disturb(
-    block: &Block,
-    nodes: &mut [DVec3],
-    elements: &IndexLists,
-    middles: &[[u32; 8]],
-    part: f64,
-    seed: u32,
-) {
+pub(super) fn disturb(typed: &Lattice, nodes: &mut [DVec3], elements: &IndexLists, middles: &[[u32; 8]]) {
+    let block = Block::new(typed);
     let regular = nodes.to_vec();
     let corners = regular.len() - middles.len();
-    let mut shifts = shifts(block, part, seed);
+    let mut shifts = shifts(&block, typed.irregular, typed.seed);
     loop {
         for (node, shift) in shifts.iter().enumerate() {
             nodes[node] = regular[node] + *shift;

@@ -43,7 +43,7 @@ pub(super) fn make(typed: &Lattice) -> Made {
         nodes.push(irregular::middle(&nodes, cell));
     }
     if typed.irregular > 0.0 {
-        irregular::disturb(&block, &mut nodes, &elements, &middles, typed.irregular, typed.seed);
+        irregular::disturb(typed, &mut nodes, &elements, &middles);
     }
     Made { nodes, elements }
 }
@@ -90,21 +90,6 @@ mod tests {
         assert_eq!(nodes[3], DVec3::new(-0.5, 0.5, -0.25));
         assert_eq!(nodes[11], DVec3::new(0.5, 0.5, 0.25));
         assert_eq!(&elements[1], [1, 2, 4, 5, 7, 8, 10, 11]);
-    }
-
-    #[test]
-    fn squares_are_counter_clockwise() {
-        let Made { nodes, elements } = plain(&[2, 1]);
-        assert_eq!(nodes.len(), 6);
-        assert_eq!(&elements[1], [1, 2, 5, 4]);
-    }
-
-    #[test]
-    fn each_axis_may_have_its_own_side() {
-        let sides = SideFile::PerAxis([0.1, 0.2, 0.4].map(Positive).to_vec());
-        let made = make(&Lattice { side: sides, ..typed(&[3, 2, 1], Cells::Cells, 0.0, 1) });
-        let (low, high) = bounds(&made.nodes);
-        assert!((low - DVec3::new(-0.15, 0.0, -0.2)).length() < 1e-15 && (high.y - 0.4).abs() < 1e-15);
     }
 
     /// Blocks of all kinds of pieces, even and uneven.

@@ -65,10 +65,10 @@ impl<'a> Generator<'a> {
     pub(super) fn size(self) -> BodySize {
         match self {
             Self::Lattice(typed) => lattice::size(typed),
-            Self::Polygon(typed) => shapes::polygon_size(typed),
+            Self::Polygon(typed) => BodySize::new(typed.sides.into(), [(typed.sides as usize, 1)]),
             Self::Fan(typed) => shapes::disc_size(1, typed.sides),
             Self::Disc(typed) => shapes::disc_size(typed.rings, typed.sectors),
-            Self::Bars(typed) => shapes::bars_size(typed),
+            Self::Bars(typed) => BodySize::new(u128::from(typed.count) + 1, [(2, typed.count.into())]),
         }
     }
 

@@ -7,17 +7,9 @@ use crate::sim::IndexLists;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-pub(super) fn polygon_size(typed: &PolygonFile) -> BodySize {
-    BodySize::new(typed.sides.into(), [(typed.sides as usize, 1)])
-}
-
 pub(super) fn disc_size(rings: u32, sectors: u32) -> BodySize {
     let (rings, sectors) = (u128::from(rings), u128::from(sectors));
     BodySize::new(1 + rings * sectors, [(3, sectors), (4, (rings - 1) * sectors)])
-}
-
-pub(super) fn bars_size(typed: &BarsFile) -> BodySize {
-    BodySize::new(u128::from(typed.count) + 1, [(2, typed.count.into())])
 }
 
 /// The corner of a regular polygon, counted counter-clockwise from the left end of its lowest side, about its middle.
@@ -74,6 +66,7 @@ pub(super) fn bars(typed: &BarsFile, direction: DVec3) -> Made {
 mod tests {
     use super::*;
     use crate::scene::file::{Coordinates, Positive};
+    use crate::scene::generate::Generator;
     use crate::sim::ElementKind;
     use crate::sim::geometry::volume_by_faces;
 
@@ -94,7 +87,7 @@ mod tests {
             let typed = PolygonFile { sides, radius: Positive(0.5) };
             let expected = 0.5 * f64::from(sides) * 0.25 * (2.0 * PI / f64::from(sides)).sin();
             let (polygon, fan, disc) = (polygon(&typed), disc(0.5, 1, sides), disc(0.5, 4, sides));
-            assert_size(&polygon, &polygon_size(&typed));
+            assert_size(&polygon, &Generator::Polygon(&typed).size());
             assert_size(&fan, &disc_size(1, sides));
             assert_size(&disc, &disc_size(4, sides));
             for made in [&polygon, &fan, &disc] {
@@ -110,7 +103,7 @@ mod tests {
     fn bars_lie_end_to_end() {
         let typed = BarsFile { count: 8, length: Positive(0.1), direction: Coordinates(vec![0.0, 3.0]) };
         let made = bars(&typed, DVec3::Y);
-        assert_size(&made, &bars_size(&typed));
+        assert_size(&made, &Generator::Bars(&typed).size());
         assert_eq!((made.nodes[0], &made.elements[7]), (DVec3::ZERO, &[7, 8][..]));
         assert!((made.nodes[8] - DVec3::Y * 0.8).length() < 1e-15);
     }
