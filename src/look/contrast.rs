@@ -8,7 +8,7 @@ use crate::reading::collector::{Collector, PathPart};
 const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// Checks the contrast of runs' chosen colours with the background, and their difference from turned-over elements.
-pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Collector<'_>) {
+pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &Collector<'_>) {
     let like_alarm = |colour| too_like(colour, palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };

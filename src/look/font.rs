@@ -66,8 +66,8 @@ impl fmt::Debug for FontFiles {
 }
 
 /// The fonts of a scene, searched in its folder, or `None` after reporting mistakes in them.
-pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Collector<'_>) -> Option<FontFiles> {
-    let mut one = |key: &str, name: &str| {
+pub(crate) fn read(folder: &Path, typed: &FontFile, report: &Collector<'_>) -> Option<FontFiles> {
+    let one = |key: &str, name: &str| {
         let found = bytes(&folder.join(name), &ENDINGS, LONGEST, "a font", EXPECTED);
         let found = found.and_then(|bytes| check(&bytes).map(|()| Arc::from(bytes)).map_err(|message| (message, None)));
         let path = [PathPart::Key("view"), PathPart::Key("font"), PathPart::Key(key)];

@@ -1,6 +1,6 @@
 //! Pictures for print: sizes in millimetres and type in points.
 
-use crate::reading::collector::{Collector, PathPart};
+use crate::reading::collector::Here;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,16 +69,11 @@ impl Print {
 }
 
 impl SizeFile {
-    /// Width and height (px), and the size in print if it was typed. `path` leads to the key.
-    pub(crate) fn resolve(
-        self,
-        least: u32,
-        path: &[PathPart<'_>],
-        report: &mut Collector<'_>,
-    ) -> Option<([u32; 2], Option<Print>)> {
+    /// Width and height (px), and the size in print if it was typed.
+    pub(crate) fn resolve(self, least: u32, here: &Here<'_>) -> Option<([u32; 2], Option<Print>)> {
         let print = match self {
             Self::Pixels(size) => return Some((size, None)),
-            Self::Print(print) => Print { at: report.position(path), ..print },
+            Self::Print(print) => Print { at: here.report.position(here.path()), ..print },
         };
         let Print { mm, dpi, .. } = print;
         let sides = mm.map(|length| (length / INCH_MM * dpi).round());
@@ -88,7 +83,7 @@ impl SizeFile {
                 "a picture of {wide} × {high} mm has {width} × {height} pixels at {dpi} dpi; expected {least} to \
                  {MOST_PIXELS} a side"
             );
-            report.at(path, message, "change `mm` or `dpi`".to_owned());
+            here.wrong(message, "change `mm` or `dpi`");
             return None;
         }
         Some((sides.map(|side| side as u32), Some(print)))
@@ -96,21 +91,15 @@ impl SizeFile {
 }
 
 impl TextScaleFile {
-    /// The scale of type, in a picture with a number of pixels per reference pixel. `path` leads to the key.
-    pub(crate) fn resolve(
-        self,
-        print: Option<&Print>,
-        unit: f64,
-        path: &[PathPart<'_>],
-        report: &mut Collector<'_>,
-    ) -> Option<f64> {
+    /// The scale of type, in a picture with a number of pixels per reference pixel.
+    pub(crate) fn resolve(self, print: Option<&Print>, unit: f64, here: &Here<'_>) -> Option<f64> {
         let pt = match self {
             Self::Times(times) => return Some(times),
             Self::Points { pt } => pt,
         };
         let Some(print) = print else {
             let message = format!("type of {pt} pt needs a size in print, but this picture has one in pixels");
-            report.at(path, message, "give `size` in millimetres, such as { mm = [180, 101] }".to_owned());
+            here.wrong(message, "give `size` in millimetres, such as { mm = [180, 101] }");
             return None;
         };
         let usual = print.points(TYPE * unit);
@@ -119,7 +108,7 @@ impl TextScaleFile {
             // Limits that are told are within the true ones.
             let [low, high] = [(10.0 * least * usual).ceil() / 10.0, (10.0 * most * usual).floor() / 10.0];
             let message = format!("type of {pt} pt does not fit a picture of this size; expected {low} to {high} pt");
-            report.at(path, message, "change `pt` or `size`".to_owned());
+            here.wrong(message, "change `pt` or `size`");
             return None;
         }
         Some(times)

@@ -2,6 +2,8 @@
 
 use super::source::Source;
 use super::{Mistake, Mistakes};
+use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
@@ -72,15 +74,15 @@ pub(crate) fn written(path: &[PathPart<'_>]) -> String {
 /// The number of mistakes that are kept with their text.
 const KEPT: usize = 1000;
 
-/// The mistakes and warnings found so far.
+/// The mistakes and warnings found so far. All parts of a scene report to the same one.
 #[derive(Debug)]
 pub(crate) struct Collector<'t> {
     /// The text of the file; `None` for a scene made in code.
     source: Option<&'t Source<'t>>,
     root: &'t DeTable<'t>,
-    found: Vec<Mistake>,
-    total: usize,
-    warned: Vec<Mistake>,
+    found: RefCell<Vec<Mistake>>,
+    total: Cell<usize>,
+    warned: RefCell<Vec<Mistake>>,
 }
 
 impl<'t> Collector<'t> {
@@ -91,18 +93,23 @@ impl<'t> Collector<'t> {
 
     /// For a scene made in code. Its mistakes have paths in place of lines and columns, and stay in the order in which they are found.
     pub(crate) fn of_code(root: &'t DeTable<'t>) -> Self {
-        Self { source: None, root, found: Vec::new(), total: 0, warned: Vec::new() }
+        Self { source: None, root, found: RefCell::default(), total: Cell::new(0), warned: RefCell::default() }
     }
 
     /// The number of mistakes found so far.
     pub(crate) fn total(&self) -> usize {
-        self.total
+        self.total.get()
+    }
+
+    /// A place in the file.
+    pub(crate) fn here<'a>(&'a self, path: &[PathPart<'a>]) -> Here<'a> {
+        Here { path: path.to_vec(), report: self }
     }
 
     /// Counts a mistake and returns true if no more messages are kept. Otherwise the caller writes the message.
-    pub(crate) fn only_counted(&mut self) -> bool {
-        let is_full = self.found.len() >= KEPT;
-        self.total += usize::from(is_full);
+    pub(crate) fn only_counted(&self) -> bool {
+        let is_full = self.found.borrow().len() >= KEPT;
+        self.total.set(self.total.get() + usize::from(is_full));
         is_full
     }
 
@@ -126,24 +133,25 @@ impl<'t> Collector<'t> {
     /// Whether a mistake was found in the line of a byte.
     pub(crate) fn has_mistake_in_line_of(&self, byte: usize) -> bool {
         let line = self.source.map_or(0, |source| source.position(byte).0);
-        self.found.iter().any(|mistake| mistake.line == line)
+        self.found.borrow().iter().any(|mistake| mistake.line == line)
     }
 
     /// A mistake at a span of the text, in the value at `path`.
-    pub(crate) fn at_span(&mut self, span: Range<usize>, path: &[PathPart<'_>], message: String, help: Option<String>) {
-        self.total += 1;
-        if self.found.len() < KEPT {
-            self.found.push(mistake(self.source, span, path, message, help));
+    pub(crate) fn at_span(&self, span: Range<usize>, path: &[PathPart<'_>], message: String, help: Option<String>) {
+        self.total.set(self.total.get() + 1);
+        let mut found = self.found.borrow_mut();
+        if found.len() < KEPT {
+            found.push(mistake(self.source, span, path, message, help));
         }
     }
 
     /// A mistake in the value at `path`, or in its nearest ancestor in the file.
-    pub(crate) fn at(&mut self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
+    pub(crate) fn at(&self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
         self.at_span(span_of(self.root, path), path, message.into(), help.text());
     }
 
     /// A mistake about the key at the end of `path`, or about the table that lacks it.
-    pub(crate) fn at_key(&mut self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
+    pub(crate) fn at_key(&self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
         let (table, key) = match path {
             [before @ .., PathPart::Key(key)] => (table_at(self.root, before), *key),
             _ => (None, ""),
@@ -153,20 +161,19 @@ impl<'t> Collector<'t> {
     }
 
     /// A warning about the value at `path`: allowed, but probably a mistake.
-    pub(crate) fn warn(&mut self, path: &[PathPart<'_>], message: String, help: impl Help) {
-        self.warned.push(mistake(self.source, span_of(self.root, path), path, message, help.text()));
+    pub(crate) fn warn(&self, path: &[PathPart<'_>], message: String, help: impl Help) {
+        let warning = mistake(self.source, span_of(self.root, path), path, message, help.text());
+        self.warned.borrow_mut().push(warning);
     }
 
     /// All warnings, in the order of the text.
-    pub(crate) fn warnings(&mut self) -> Vec<Mistake> {
-        let found = std::mem::take(&mut self.warned);
-        self.in_order(found)
+    pub(crate) fn warnings(&self) -> Vec<Mistake> {
+        self.in_order(self.warned.take())
     }
 
     /// All mistakes, in the order of the text.
-    pub(crate) fn finish(mut self, file: &str) -> Mistakes {
-        let found = std::mem::take(&mut self.found);
-        Mistakes { file: file.into(), found: self.in_order(found), total: self.total }
+    pub(crate) fn finish(self, file: &str) -> Mistakes {
+        Mistakes { file: file.into(), found: self.in_order(self.found.take()), total: self.total.get() }
     }
 
     /// Mistakes in the order of the text. Mistakes in settings of the command line come last and get no position.
@@ -176,6 +183,57 @@ impl<'t> Collector<'t> {
             found.iter_mut().filter(|mistake| self.source.is_some_and(|source| source.is_setting(mistake.line)));
         of_settings.for_each(|mistake| (mistake.line, mistake.column) = (0, 0));
         found
+    }
+}
+
+/// A place in a file, where mistakes are reported. It prints as its path.
+#[derive(Clone, Debug)]
+pub(crate) struct Here<'a> {
+    path: Vec<PathPart<'a>>,
+    pub(crate) report: &'a Collector<'a>,
+}
+
+impl<'a> Here<'a> {
+    /// A key or an entry in it.
+    pub(crate) fn to(&self, part: impl Into<PathPart<'a>>) -> Self {
+        Self { path: key_path![self.path; part.into()], report: self.report }
+    }
+
+    /// Goes to another entry beside it.
+    pub(crate) fn go_to(&mut self, index: usize) {
+        self.path.pop();
+        self.path.push(PathPart::Index(index));
+    }
+
+    /// Its path.
+    pub(crate) fn path(&self) -> &[PathPart<'a>] {
+        &self.path
+    }
+
+    /// Whether the file has it.
+    pub(crate) fn is_typed(&self) -> bool {
+        self.report.is_typed(&self.path)
+    }
+
+    /// A mistake in the value, or in its nearest ancestor in the file.
+    pub(crate) fn wrong(&self, message: impl Into<String>, help: impl Help) {
+        self.report.at(&self.path, message, help);
+    }
+
+    /// A mistake about the key, or about the table that lacks it.
+    pub(crate) fn wrong_key(&self, message: impl Into<String>, help: impl Help) {
+        self.report.at_key(&self.path, message, help);
+    }
+
+    /// A warning about the value.
+    pub(crate) fn warn(&self, message: String, help: impl Help) {
+        self.report.warn(&self.path, message, help);
+    }
+}
+
+impl fmt::Display for Here<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&written(&self.path))
     }
 }
 

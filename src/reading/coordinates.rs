@@ -1,6 +1,6 @@
 //! Points and vectors as typed.
 
-use super::collector::{Collector, PathPart, written};
+use super::collector::Here;
 use crate::sim::Dimension;
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
@@ -30,12 +30,7 @@ impl From<DVec3> for Coordinates {
 }
 
 /// Typed coordinates as a vector, with z = 0 in the plane. A wrong number of coordinates is a mistake.
-pub(crate) fn vector(
-    typed: &Coordinates,
-    dimension: Dimension,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<DVec3> {
+pub(crate) fn vector(typed: &Coordinates, dimension: Dimension, here: &Here<'_>) -> Option<DVec3> {
     match (typed.0.as_slice(), dimension) {
         (&[x, y, z], Dimension::Space) => Some(DVec3::new(x, y, z)),
         (&[x, y], Dimension::Plane) => Some(DVec3::new(x, y, 0.0)),
@@ -44,15 +39,14 @@ pub(crate) fn vector(
                 Dimension::Space => "3, because the body is in space",
                 Dimension::Plane => "2, because the body is in the plane",
             };
-            let message = format!("`{}` has {} coordinates; expected {expected}", written(path), other.len());
-            report.at(path, message, None);
+            here.wrong(format!("`{here}` has {} coordinates; expected {expected}", other.len()), None);
             None
         }
     }
 }
 
 /// A vector scaled to unit length. A zero vector is a mistake.
-pub(crate) fn direction(vector: DVec3, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<DVec3> {
+pub(crate) fn direction(vector: DVec3, here: &Here<'_>) -> Option<DVec3> {
     // The largest coordinate is divided out first: squares of very small or large numbers leave the range of double
     // precision.
     let largest = vector.abs().max_element();
@@ -60,6 +54,6 @@ pub(crate) fn direction(vector: DVec3, path: &[PathPart<'_>], report: &mut Colle
     if largest > 0.0 && unit.is_finite() {
         return Some(unit);
     }
-    report.at(path, format!("`{}` is zero, so it has no direction", written(path)), None);
+    here.wrong(format!("`{here}` is zero, so it has no direction"), None);
     None
 }

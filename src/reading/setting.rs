@@ -120,7 +120,7 @@ pub(crate) struct Wrong {
 
 impl Wrong {
     /// Reports the mistake, unless one in the same setting is known, such as an unknown key.
-    pub(crate) fn report(self, report: &mut Collector<'_>) {
+    pub(crate) fn report(self, report: &Collector<'_>) {
         if !report.has_mistake_in_line_of(self.span.start) {
             report.at_span(self.span, &[], self.message, self.help);
         }

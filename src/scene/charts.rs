@@ -3,7 +3,7 @@
 use super::{Scene, SceneBody};
 use crate::look::{Measure, Plot, PlotOf};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::collector::{Collector, Here, key_path};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{list, nearest, quoted};
 use crate::sim::model::ElasticModel;
@@ -34,30 +34,26 @@ impl Scene {
     }
 
     /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
-    pub(super) fn check_charts(charts: &[Plot], scenes: &[Self], table: &'static str, report: &mut Collector<'_>) {
+    pub(super) fn check_charts(charts: &[Plot], scenes: &[Self], table: &'static str, report: &Collector<'_>) {
         for (index, chart) in charts.iter().enumerate() {
-            let path = key_path![table, "charts", index];
+            let entry = |at: usize| report.here(&key_path![table, "charts", at]);
+            let here = entry(index);
             let found = chart.diagnostic().map_or("the same".to_owned(), |one| quoted(&typed(&one)));
             if let Some(first) = charts[..index].iter().position(|other| other == chart) {
-                let message = format!("`{table}.charts[{index}]` is {found}, as is `{table}.charts[{first}]`");
-                report.at(&path, message, "expected each diagnostic once; remove one".to_owned());
+                let message = format!("`{here}` is {found}, as is `{}`", entry(first));
+                here.wrong(message, "expected each diagnostic once; remove one");
             } else if let Plot::Of(of) = chart {
-                scenes.iter().for_each(|scene| scene.check_plot(of, &path, report));
+                scenes.iter().for_each(|scene| scene.check_plot(of, &here));
                 if scenes.len() > 1 && of.against.is_some() {
-                    let message =
-                        format!("`{table}.charts[{index}]` is against a displacement, but of {} scenes", scenes.len());
-                    report.at(
-                        &key_path![path; "against"],
-                        message,
-                        "such a chart shows one scene; remove `against`".to_owned(),
-                    );
+                    let message = format!("`{here}` is against a displacement, but of {} scenes", scenes.len());
+                    here.to("against").wrong(message, "such a chart shows one scene; remove `against`");
                 }
             } else if let Some((message, help)) = Self::lacks_bodies(chart, scenes) {
-                report.at(&path, format!("`{table}.charts[{index}]` is of each body, but {message}"), help.to_owned());
+                here.wrong(format!("`{here}` is of each body, but {message}"), help);
             } else if let Some(why) =
                 scenes.iter().map(|scene| scene.lacks(chart.diagnostic()?)).reduce(Option::and).flatten()
             {
-                report.at(&path, format!("`{table}.charts[{index}]` is {found}, which no run has"), why);
+                here.wrong(format!("`{here}` is {found}, which no run has"), why);
             }
         }
     }
@@ -75,7 +71,7 @@ impl Scene {
     }
 
     /// Reports a chart at a path of a thing that is not there, or without a direction.
-    fn check_plot(&self, of: &PlotOf, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    fn check_plot(&self, of: &PlotOf, here: &Here<'_>) {
         let (exerting, moving) = (self.exerting(), self.moving());
         let measured = if of.plot == Measure::Displacement { &moving } else { &exerting };
         let is_other = |name: &&str| of.plot != Measure::Displacement && *name != of.of;
@@ -96,27 +92,23 @@ impl Scene {
                 ("of", Measure::Force | Measure::Torque) => "an obstacle, a hold, a grab or one of several bodies",
                 _ => "a probe, a hold, a grab or an obstacle",
             };
-            let here = list(known, "or", quoted);
+            let all = list(known, "or", quoted);
             let expected = match (key, of.plot) {
                 ("on", Measure::Displacement) => what.to_owned(),
                 _ if known.is_empty() => format!("{what}; there is none"),
-                _ => format!("{what}: {here}"),
+                _ => format!("{what}: {all}"),
             };
             let help = nearest(name, known).map(|near| format!("did you mean {}?", quoted(near)));
-            let path = key_path![path; key];
-            report.at(&path, format!("`{}` is {}; expected {expected}", written(&path), quoted(name)), help);
+            let here = here.to(key);
+            here.wrong(format!("`{here}` is {}; expected {expected}", quoted(name)), help);
             return;
         }
-        let at = key_path![path; "along"];
+        let at = here.to("along");
         if let Some(typed) = &of.along {
-            vector(typed, self.dimension(), &at, report).and_then(|along| direction(along, &at, report));
+            vector(typed, self.dimension(), &at).and_then(|along| direction(along, &at));
         } else if let Some(against) = of.against.as_ref().filter(|_| self.along(of).is_none()) {
-            let message = format!("`{}` has no `along`, and {} has no path", written(path), quoted(against));
-            report.at(
-                path,
-                message,
-                "give the direction of the force and the displacement, such as along = [0, -1, 0]".to_owned(),
-            );
+            let message = format!("`{here}` has no `along`, and {} has no path", quoted(against));
+            here.wrong(message, "give the direction of the force and the displacement, such as along = [0, -1, 0]");
         }
     }
 

@@ -122,8 +122,9 @@ impl Scene {
                 is_list: checked.parts.get("body").is_some_and(Value::is_array),
                 folder,
                 limits,
+                report,
             };
-            Ok(typed.resolve(&name, report))
+            Ok(typed.resolve(&name))
         })
     }
 }
@@ -174,7 +175,7 @@ pub(super) fn checked<T>(
     document: Document<'_>,
     schema: &Value,
     other: Other,
-    resolve: impl FnOnce(Checked, &mut Collector<'_>) -> Result<Option<T>, SceneError>,
+    resolve: impl FnOnce(Checked, &Collector<'_>) -> Result<Option<T>, SceneError>,
 ) -> Result<T, SceneError> {
     let Document { text, name, settings, lists } = document;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -191,7 +192,7 @@ pub(super) fn checked<T>(
     settings.iter().for_each(|setting| whole.to_mut().extend(["\n", OPTION, setting.text()]));
     let source = Source::with_settings(&whole, text.len());
     let (root, wrong) = set(root, settings, &whole, text.len());
-    let mut report = match lists {
+    let report = match lists {
         Some(_) => Collector::of_code(root.get_ref()),
         None => Collector::new(&source, root.get_ref()),
     };
@@ -199,9 +200,9 @@ pub(super) fn checked<T>(
         report.at_key(&key_path![*key], other.message, None);
         return Err(SceneError::Mistakes(report.finish(name)));
     }
-    let checked = structure::check(schema, root.get_ref(), &mut report);
-    wrong.into_iter().for_each(|wrong| wrong.report(&mut report));
-    match resolve(checked, &mut report)? {
+    let checked = structure::check(schema, root.get_ref(), &report);
+    wrong.into_iter().for_each(|wrong| wrong.report(&report));
+    match resolve(checked, &report)? {
         Some(meaning) if report.total() == 0 => Ok(meaning),
         _ => Err(SceneError::Mistakes(report.finish(name))),
     }

@@ -10,7 +10,7 @@ use std::slice;
 
 impl SceneFile {
     /// The parts of a checked file that have no mistakes.
-    pub(super) fn of(checked: &Checked, report: &mut Collector<'_>) -> Self {
+    pub(super) fn of(checked: &Checked, report: &Collector<'_>) -> Self {
         let parts = &checked.parts;
         let body = match parts.get("body") {
             Some(Json::Array(_)) => entries(parts, "body", report),
@@ -77,22 +77,18 @@ impl SceneFile {
 }
 
 /// The part of a file at a key.
-fn part<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Option<T> {
+fn part<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &Collector<'_>) -> Option<T> {
     typed(parts.get(key)?, &key_path![key], report)
 }
 
 /// The entries of a list in a file.
-fn entries<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Vec<Option<T>> {
+fn entries<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &Collector<'_>) -> Vec<Option<T>> {
     let entries = parts.get(key).and_then(Json::as_array).into_iter().flatten().enumerate();
     entries.map(|(at, entry)| typed(entry, &key_path![key, at], report)).collect()
 }
 
 /// A checked value at a path of a file as its type; `None` after a mistake in it.
-pub(super) fn typed<T: DeserializeOwned>(
-    checked: &Json,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<T> {
+pub(super) fn typed<T: DeserializeOwned>(checked: &Json, path: &[PathPart<'_>], report: &Collector<'_>) -> Option<T> {
     let known = report.total();
     // A required key may be missing after a mistake. Otherwise the schema has accepted the value, and an error of the
     // types is unexpected.

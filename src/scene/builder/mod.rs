@@ -238,11 +238,11 @@ impl SceneBuilder {
         // The scene file that says the same, without entries of lists and models of the caller's own, which are checked as they are.
         let text = toml::to_string(&file).expect("numbers, texts, and lists and tables of them");
         let root = DeTable::parse(&text).expect("as it was written");
-        let mut report = Collector::of_code(root.get_ref());
-        let checked = structure::check(&SCHEMA_OF_CODE, root.get_ref(), &mut report);
+        let report = Collector::of_code(root.get_ref());
+        let checked = structure::check(&SCHEMA_OF_CODE, root.get_ref(), &report);
         file.drop_mistakes(&checked);
         let (flawed, is_list, folder) = (&checked.flawed, file.body.len() > 1, Path::new(""));
-        let scene = Typed { file: &file, flawed, is_list, folder, limits }.resolve(&name, &mut report);
+        let scene = Typed { file: &file, flawed, is_list, folder, limits, report: &report }.resolve(&name);
         scene.filter(|_| report.total() == 0).ok_or_else(|| SceneError::Mistakes(report.finish(&name)))
     }
 }

@@ -3,20 +3,26 @@
 use super::Forces;
 use super::file::{ForcesFile, NumbersFile};
 use super::resolve::{Scenes, share_lines};
-use crate::reading::collector::{PathPart, key_path};
+use crate::reading::collector::{Here, key_path};
 use crate::reading::words::{list, quoted};
 use crate::scene::{Run, Scene, SceneError};
 
 /// The most nodes of a body whose forces are drawn.
 const MOST_NODES: usize = 80;
 
-impl Scenes<'_, '_, '_> {
+impl<'a> Scenes<'a> {
+    /// The place of a scene in a diagram of forces.
+    fn of_forces(&self, index: usize) -> Here<'a> {
+        self.report.here(&key_path!["forces", "scenes", index])
+    }
+
     /// The diagram of a file; `None` after reporting a mistake.
     pub(super) fn forces(mut self, file: ForcesFile) -> Result<Option<Forces>, SceneError> {
         let before = self.report.total();
         for (index, named) in file.scenes.iter().enumerate() {
-            if self.scene(named, &of_forces(index))?.is_some_and(|place| place < index) {
-                self.report.at(&of_forces(index), "this scene is named a second time", None);
+            let here = self.of_forces(index);
+            if self.scene(named, &here)?.is_some_and(|place| place < index) {
+                here.wrong("this scene is named a second time", None);
             }
         }
         if self.report.total() > before {
@@ -27,7 +33,7 @@ impl Scenes<'_, '_, '_> {
         for (index, _) in self.scenes.iter().enumerate().filter(|(_, scene)| names(scene) != runs) {
             let all = list(&runs, "and", |name| format!("“{name}”"));
             let message = format!("the runs of this scene differ from those of the first: {all}");
-            self.report.at(&of_forces(index), message, None);
+            self.of_forces(index).wrong(message, None);
         }
         let compare = file.compare.as_ref().and_then(|name| self.compared(name, &runs));
         if file.notes.len() > runs.len() {
@@ -38,13 +44,13 @@ impl Scenes<'_, '_, '_> {
         if let Some((index, run)) = self.scenes.iter().enumerate().find_map(|(at, scene)| Some((at, recorded(scene)?)))
         {
             let message = format!("the run {run} is a recording, whose forces are not known");
-            self.report.at(&of_forces(index), message, "give it a `model`, or leave it out");
+            self.of_forces(index).wrong(message, "give it a `model`, or leave it out");
             return Ok(None);
         }
         let numbers = file.numbers == NumbersFile::Force;
         if file.vectors && (numbers || runs.len() > 1) {
             let message = "vectors are drawn for one run, and without numbers";
-            let help = "leave one run in the scenes, and write `numbers = \"none\"`".to_owned();
+            let help = "leave one run in the scenes, and write `numbers = \"none\"`";
             self.report.at_key(&key_path!["forces", "vectors"], message, help);
         }
         self.check_units(numbers);
@@ -59,21 +65,21 @@ impl Scenes<'_, '_, '_> {
     /// The place of the run with which others are compared among all `runs`; `None` after reporting that there is none. Reports scenes
     /// in which another run has other bodies.
     fn compared(&mut self, name: &str, runs: &[String]) -> Option<usize> {
-        let path = key_path!["forces", "compare"];
+        let here = self.report.here(&key_path!["forces", "compare"]);
         let place = runs.iter().position(|run| run == name);
         if place.is_none() {
             let (message, help) = self.scenes[0].no_run(name);
-            self.report.at(&path, message, help);
+            here.wrong(message, help);
         }
         if runs.len() == 1 {
-            self.report.at_key(&path, "there is a single run, and nothing to compare it with", None);
+            here.wrong_key("there is a single run, and nothing to compare it with", None);
         }
         for (index, scene) in self.scenes.iter().enumerate() {
             let Some(compared) = place.and_then(|place| scene.runs.get(place)) else { continue };
             if let Some(other) = scene.runs.iter().find(|run| run.of != compared.of) {
                 let [one, other] = [compared, other].map(|run| quoted(&run.name));
                 let message = format!("{one} and {other} have different bodies, so their forces cannot be compared");
-                self.report.at(&of_forces(index), message, "give both runs the same bodies, or remove `compare`");
+                self.of_forces(index).wrong(message, "give both runs the same bodies, or remove `compare`");
             }
         }
         place
@@ -90,13 +96,13 @@ impl Scenes<'_, '_, '_> {
             if of_runs(scene).iter().any(|&other| other != stiffness) {
                 let message =
                     format!("a run has another stiffness than the first, {stiffness} N/m: forces would have two units");
-                self.report.at(&of_forces(index), message, "give all runs the same stiffness");
+                self.of_forces(index).wrong(message, "give all runs the same stiffness");
             }
             let nodes = scene.runs.iter().map(|run| run.body().len()).max().unwrap_or_default();
             if nodes > MOST_NODES {
                 let bodies = if scene.bodies.len() == 1 { "the body has" } else { "the bodies of a run have" };
                 let message = format!("{bodies} {nodes} nodes, whose forces would hide each other");
-                self.report.at(&of_forces(index), message, format!("expected at most {MOST_NODES}"));
+                self.of_forces(index).wrong(message, format!("expected at most {MOST_NODES}"));
             }
         }
         let side = self.scenes[0].view.side;
@@ -106,12 +112,7 @@ impl Scenes<'_, '_, '_> {
             let message = format!(
                 "the elements of this scene have sides of {found} m, but {side} m in the first: numbers in `k × side` would have two units"
             );
-            self.report.at(&of_forces(index), message, "use bodies of one size, or `numbers = \"none\"`");
+            self.of_forces(index).wrong(message, "use bodies of one size, or `numbers = \"none\"`");
         }
     }
-}
-
-/// The place of a scene in a diagram of forces.
-fn of_forces(index: usize) -> [PathPart<'static>; 3] {
-    key_path!["forces", "scenes", index]
 }

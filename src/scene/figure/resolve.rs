@@ -3,7 +3,7 @@
 use super::file::FigureFile;
 use super::{Content, Figure, Forces, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::{Collector, Here, key_path};
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
 use serde::Deserialize;
@@ -22,7 +22,7 @@ pub(super) fn resolve(
     name: &str,
     folder: &Path,
     scene: Reader<'_>,
-    report: &mut Collector<'_>,
+    report: &Collector<'_>,
 ) -> Result<Option<Figure>, SceneError> {
     if report.total() > 0 {
         return Ok(None);
@@ -45,7 +45,7 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &key_path!["size"], report) else { return Ok(None) };
+    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &report.here(&key_path!["size"])) else { return Ok(None) };
     if size.iter().any(|&side| side < LEAST_SIDE) {
         let [width, height] = size;
         let message = format!("`size` is {width} × {height}; expected {LEAST_SIDE} to 16384 pixels a side");
@@ -60,7 +60,7 @@ pub(super) fn resolve(
         }
     };
     let text_scale = match file.text_scale {
-        Some(typed) => match typed.resolve(print.as_ref(), unit, &key_path!["text_scale"], report) {
+        Some(typed) => match typed.resolve(print.as_ref(), unit, &report.here(&key_path!["text_scale"])) {
             None => return Ok(None),
             times => times,
         },
@@ -79,17 +79,17 @@ pub(super) fn resolve(
 }
 
 /// The scenes of a figure, each read once.
-pub(super) struct Scenes<'a, 'r, 't> {
+pub(super) struct Scenes<'a> {
     folder: &'a Path,
     read: Reader<'a>,
-    pub(super) report: &'r mut Collector<'t>,
+    pub(super) report: &'a Collector<'a>,
     pub(super) scenes: Vec<Scene>,
     places: HashMap<PathBuf, usize>,
 }
 
-impl Scenes<'_, '_, '_> {
-    /// The index of the scene named at `path` in the file; `None` after reporting a mistake.
-    pub(super) fn scene(&mut self, named: &str, path: &[PathPart<'_>]) -> Result<Option<usize>, SceneError> {
+impl Scenes<'_> {
+    /// The index of the scene named at a place in the file; `None` after reporting a mistake.
+    pub(super) fn scene(&mut self, named: &str, here: &Here<'_>) -> Result<Option<usize>, SceneError> {
         let file = self.folder.join(named);
         if let Some(&place) = self.places.get(&file) {
             return Ok(Some(place));
@@ -103,7 +103,7 @@ impl Scenes<'_, '_, '_> {
             // Mistakes inside a scene have positions there.
             Err(error @ (SceneError::Mistakes(_) | SceneError::Syntax(_))) => Err(error),
             Err(error) => {
-                self.report.at(path, error.to_string(), None);
+                here.wrong(error.to_string(), None);
                 Ok(None)
             }
         }

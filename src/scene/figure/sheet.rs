@@ -9,10 +9,10 @@ use crate::scene::view::{self, Subject};
 use crate::scene::{Scene, SceneError};
 use std::mem::take;
 
-impl Scenes<'_, '_, '_> {
+impl Scenes<'_> {
     /// The columns of a sheet; `None` after reporting a mistake.
     fn columns(&mut self, file: &mut SheetFile) -> Result<Option<Vec<Column>>, SceneError> {
-        let at = |key: &'static str| key_path!["sheet", key];
+        let sheet = self.report.here(&key_path!["sheet"]);
         let before = self.report.total();
         let moment = |&time: &f64| ColumnFile { scene: None, time: Some(time), label: None };
         let wrong = match &file.moments {
@@ -21,27 +21,27 @@ impl Scenes<'_, '_, '_> {
             _ => "",
         };
         if !wrong.is_empty() {
-            self.report.at_key(&at("moments"), wrong, None);
+            sheet.to("moments").wrong_key(wrong, None);
             return Ok(None);
         }
         let moments = file.moments.iter().flatten().map(moment);
         let columns: Vec<_> = moments.chain(take(&mut file.column)).collect();
         if columns.is_empty() {
-            self.report.at(&at(""), "the sheet has no columns: expected `moments` or `[[sheet.column]]`", None);
+            sheet.to("").wrong("the sheet has no columns: expected `moments` or `[[sheet.column]]`", None);
             return Ok(None);
         }
         let usual = match &file.scene {
-            Some(named) => self.scene(named, &at("scene"))?,
+            Some(named) => self.scene(named, &sheet.to("scene"))?,
             None => None,
         };
         let mut resolved = Vec::new();
         for (index, column) in columns.into_iter().enumerate() {
-            let path = key_path!["sheet", "column", index, "scene"];
+            let here = sheet.to("column").to(index).to("scene");
             let scene = match (&column.scene, &file.scene) {
-                (Some(named), _) => self.scene(named, &path)?,
+                (Some(named), _) => self.scene(named, &here)?,
                 (None, Some(_)) => usual,
                 (None, None) => {
-                    self.report.at(&path, "the column has no scene: expected `scene` here or in `[sheet]`", None);
+                    here.wrong("the column has no scene: expected `scene` here or in `[sheet]`", None);
                     None
                 }
             };
@@ -96,10 +96,11 @@ impl Scenes<'_, '_, '_> {
 
     /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
     fn check_times(&mut self, charts: &[Plot], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
-        let at = |key: &'static str| key_path!["sheet", key];
+        let sheet = self.report.here(&key_path!["sheet"]);
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
             if charts.is_empty() {
-                self.report.at_key(&at(key), format!("`sheet.{key}` is about charts, but there are none"), None);
+                let here = sheet.to(*key);
+                here.wrong_key(format!("`{here}` is about charts, but there are none"), None);
                 return;
             }
         }
@@ -110,47 +111,46 @@ impl Scenes<'_, '_, '_> {
                 true => format!("the axis of time begins at {from} s, but there is a moment at {earliest} s"),
                 false => format!("the axis of time begins at {from} s, but the scene ends at {end} s"),
             };
-            self.report.at(&at("from"), message, "expected an earlier one");
+            sheet.to("from").wrong(message, "expected an earlier one");
         } else if let Some(split) = split.filter(|&split| split >= end || split <= from.unwrap_or(0.0)) {
             let from = from.unwrap_or(0.0);
             let message =
                 format!("the axis of time goes from {from} to {end} s; expected a moment between, found {split}");
-            self.report.at(&at("split"), message, None);
+            sheet.to("split").wrong(message, None);
         }
     }
 
     /// Whether each cell has a run and a moment.
     fn check_cells(&mut self, rows: &[RowFile], columns: &[Column], are_moments: bool) {
+        let sheet = self.report.here(&key_path!["sheet"]);
         for (index, row) in rows.iter().enumerate() {
-            let path = |key: &'static str| key_path!["sheet", "row", index, key];
+            let here = sheet.to("row").to(index);
             for scene in &self.scenes {
                 if !scene.runs.iter().any(|run| run.name == row.run) {
                     let (message, help) = scene.no_run(&row.run);
-                    self.report.at(&path("run"), message, help);
+                    here.to("run").wrong(message, help);
                 }
                 if row.time.is_some_and(|time| time > end(scene)) {
-                    self.report.at(&path("time"), too_late(scene), None);
+                    here.to("time").wrong(too_late(scene), None);
                 }
             }
         }
         let timed = rows.iter().position(|row| row.time.is_some());
         if let Some(index) = timed.filter(|_| columns.iter().any(|column| column.time.is_some())) {
-            let path = key_path!["sheet", "row", index, "time"];
             let message = "both a row and a column give the moment of the same picture";
-            self.report.at_key(&path, message, "keep the moments of either rows or columns");
+            sheet.to("row").to(index).to("time").wrong_key(message, "keep the moments of either rows or columns");
         }
         let timeless = rows.iter().find(|row| row.time.is_none());
         for (index, column) in columns.iter().enumerate() {
             let scene = &self.scenes[column.scene];
-            let path = |key: &'static str| key_path!["sheet", "column", index, key];
+            let time = sheet.to("column").to(index).to("time");
             if column.time.is_some_and(|time| time > end(scene)) {
-                let moments = key_path!["sheet", "moments", index];
-                let place: &[_] = if are_moments { &moments } else { &path("time") };
-                self.report.at(place, too_late(scene), None);
+                let place = if are_moments { &sheet.to("moments").to(index) } else { &time };
+                place.wrong(too_late(scene), None);
             }
             if let Some(row) = timeless.filter(|_| column.time.is_none()) {
                 let message = format!("the column has no `time`, and neither has the row “{}”", row.run);
-                self.report.at(&path("time"), message, "give it in one of them");
+                time.wrong(message, "give it in one of them");
             }
         }
     }

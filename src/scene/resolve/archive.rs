@@ -1,10 +1,10 @@
 //! The lists of a body in a NumPy archive.
 
-use super::KeyPath;
 use super::lists::{ListSource, Lists};
 use crate::reading::beside::missing;
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Here;
 use crate::reading::words::{count, list, nearest};
+use crate::scene::file::LISTS;
 use crate::scene::limits::Limits;
 use crate::scene::mesh;
 use crate::scene::npz::{Array, Npz, Values};
@@ -17,19 +17,10 @@ use std::path::Path;
 const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \
                         -1 at the end of short ones); docs/bodies.md has an example";
 
-/// The names of arrays in an archive, in the order in which they are read.
-const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
-
-impl Lists {
+impl<'a> Lists<'a> {
     /// The lists of the archive of a body, or `None` after reporting its mistakes.
-    pub(super) fn read(
-        folder: &Path,
-        name: &str,
-        body: KeyPath,
-        limits: &Limits,
-        report: &mut Collector<'_>,
-    ) -> Option<Self> {
-        let (path, place) = (folder.join(name), key_path![body; "file"]);
+    pub(super) fn read(folder: &Path, name: &str, body: Here<'a>, limits: &Limits) -> Option<Self> {
+        let (path, place, report) = (folder.join(name), body.to("file"), body.report);
         let open = || match path.exists() {
             false => Err(missing(&path, &["npz"])),
             true => match mesh::instead_of_archive(&path, name) {
@@ -37,35 +28,29 @@ impl Lists {
                 None => Npz::open(&path).map_err(|message| (message, Some(EXPECTED.to_owned()))),
             },
         };
-        let mut npz = open().map_err(|(message, help)| report.at(&place, format!("`{name}` {message}"), help)).ok()?;
+        let mut npz = open().map_err(|(message, help)| place.wrong(format!("`{name}` {message}"), help)).ok()?;
         let before = report.total();
         let source = ListSource { body, file: Some((name.to_owned(), place)) };
-        let lists = Reader { npz: &mut npz, source, limits, report }.lists();
+        let lists = Reader { npz: &mut npz, source, limits }.lists();
         lists.filter(|_| report.total() == before)
     }
 
     /// The lists of the body of a run in an archive of states, if it has one; `None` after reporting mistakes, too.
-    pub(super) fn recorded(
-        npz: &mut Npz,
-        run: &str,
-        source: ListSource,
-        limits: &Limits,
-        report: &mut Collector<'_>,
-    ) -> Option<Self> {
+    pub(super) fn recorded(npz: &mut Npz, run: &str, source: ListSource<'a>, limits: &Limits) -> Option<Self> {
         let names = npz.names();
         // A run has its own body, or that of all runs.
         let name = |key: &str| [full(run, key), key.to_owned()].into_iter().find(|name| names.contains(name));
         let rest = name("rest")?;
         let [elements, faces, mass] =
             ["elements", "faces", "mass"].map(|key| name(key).unwrap_or_else(|| full(run, key)));
-        let mut reader = Reader { npz, source, limits, report };
+        let mut reader = Reader { npz, source, limits };
         let (nodes, dimension) = reader.nodes(&rest)?;
         let elements = reader.array(&elements).and_then(|array| reader.rows(&elements, &array, 2));
         let faces = reader.optional(&faces).and_then(|array| reader.rows(&faces, &array, 3));
         let masses = reader.optional(&mass).and_then(|array| reader.masses(&mass, &array));
         let (nodes, elements, source) = (nodes?, elements?, reader.source);
         let count = masses.as_ref().map_or(nodes.len(), Vec::len);
-        source.check_count(&mass, count, nodes.len(), report);
+        source.check_count(&mass, count, nodes.len());
         (count == nodes.len()).then(|| Self { faces, masses, ..Self::new(source, dimension, nodes, elements) })
     }
 }
@@ -76,28 +61,23 @@ fn of_any(key: &str) -> &str {
 }
 
 /// Reads the arrays of one archive.
-struct Reader<'a, 't> {
-    npz: &'a mut Npz,
-    source: ListSource,
-    limits: &'a Limits,
-    report: &'a mut Collector<'t>,
+struct Reader<'r, 'a> {
+    npz: &'r mut Npz,
+    source: ListSource<'a>,
+    limits: &'r Limits,
 }
 
-impl Reader<'_, '_> {
-    fn say(&mut self, key: &str, at: &[usize], message: &str) {
-        self.source.say(self.report, key, at, message);
-    }
-
-    fn lists(mut self) -> Option<Lists> {
-        for name in self.npz.names().iter().filter(|name| !ARRAYS.contains(&name.as_str())) {
+impl<'a> Reader<'_, 'a> {
+    fn lists(mut self) -> Option<Lists<'a>> {
+        for name in self.npz.names().iter().filter(|name| !LISTS.contains(&name.as_str())) {
             // The names in `meshio`.
             let known = [("points", "nodes"), ("cells", "elements")].into_iter().find(|(other, _)| other == name);
-            let help = match known.map(|(_, ours)| ours).or_else(|| nearest(name, &ARRAYS)) {
+            let help = match known.map(|(_, ours)| ours).or_else(|| nearest(name, &LISTS)) {
                 Some(near) => format!("did you mean `{near}`?"),
-                None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
+                None => format!("known here: {}", list(&LISTS, "and", str::to_owned)),
             };
             let message = format!("`{}` is not an array of a body", self.source.name(name, &[]));
-            self.source.report(self.report, name, &[], message, help);
+            self.source.report(name, &[], message, help);
         }
         let (nodes, dimension) = self.nodes("nodes").unzip();
         let (nodes, dimension) = (nodes.flatten(), dimension.unwrap_or(Dimension::Space));
@@ -116,7 +96,7 @@ impl Reader<'_, '_> {
     fn array(&mut self, key: &str) -> Option<Array> {
         let found = self.npz.array(key);
         if let (None, Some((file, place))) = (&found, &self.source.file) {
-            self.report.at(place, format!("`{file}` has no array `{key}`"), None);
+            place.wrong(format!("`{file}` has no array `{key}`"), None);
         }
         self.sound(key, found?)
     }
@@ -132,11 +112,11 @@ impl Reader<'_, '_> {
         let is_empty = |array: &Array| array.shape.first() == Some(&0) && of_any(key) != "faces";
         let empty = || "is empty; expected at least one row".to_owned();
         let sound = found.and_then(|array| if is_empty(&array) { Err(empty()) } else { Ok(array) });
-        sound.map_err(|message| self.say(key, &[], &message)).ok()
+        sound.map_err(|message| self.source.say(key, &[], &message)).ok()
     }
 
     fn wrong_shape(&mut self, key: &str, array: &Array, expected: &str) {
-        self.say(key, &[], &format!("has the shape {}; expected {expected}", array.shape_in_words()));
+        self.source.say(key, &[], &format!("has the shape {}; expected {expected}", array.shape_in_words()));
     }
 
     /// The values of an array, unless it is too large.
@@ -152,10 +132,10 @@ impl Reader<'_, '_> {
             let (name, length, limit) = (self.source.name(key, &[]), count(length.into()), count(limit.into()));
             let message = format!("`{name}` has {length} {what}; the limit is {limit}");
             let help = "use fewer nodes, or allow it with --allow-large (in code, `Limits::NONE`)";
-            self.source.report(self.report, key, &[], message, help);
+            self.source.report(key, &[], message, help);
             return None;
         }
-        self.npz.values(array).map_err(|message| self.say(key, &[], &message)).ok()
+        self.npz.values(array).map_err(|message| self.source.say(key, &[], &message)).ok()
     }
 
     /// The nodes, and whether they are in the plane or in space; `None` without their array.
@@ -180,7 +160,7 @@ impl Reader<'_, '_> {
         let depth = |row| if values.columns == 2 { 0.0 } else { values.double(row, 2) };
         let point = |row| DVec3::new(values.double(row, 0), values.double(row, 1), depth(row));
         let points: Vec<_> = (0..values.rows).map(point).collect();
-        self.source.check_points(key, &points, self.report);
+        self.source.check_points(key, &points);
         Some(points)
     }
 
@@ -191,7 +171,7 @@ impl Reader<'_, '_> {
         }
         let values = self.values(key, array)?;
         let masses: Vec<_> = (0..values.rows).map(|row| values.double(row, 0)).collect();
-        self.source.check_masses(key, &masses, self.report);
+        self.source.check_masses(key, &masses);
         Some(masses)
     }
 
@@ -203,7 +183,7 @@ impl Reader<'_, '_> {
         }
         if !array.is_whole() {
             let kind = array.type_in_words();
-            self.say(key, &[], &format!("is {kind}; expected integers, as by astype(\"<i4\")"));
+            self.source.say(key, &[], &format!("is {kind}; expected integers, as by astype(\"<i4\")"));
             return None;
         }
         self.values(key, array)
@@ -213,7 +193,7 @@ impl Reader<'_, '_> {
     fn index(&mut self, key: &str, values: &Values, at: [usize; 2]) -> u32 {
         let number = values.whole(at[0], at[1]);
         u32::try_from(number).unwrap_or_else(|_| {
-            self.say(key, &at, &format!("is {number}; expected the number of a node"));
+            self.source.say(key, &at, &format!("is {number}; expected the number of a node"));
             0
         })
     }
@@ -234,7 +214,7 @@ impl Reader<'_, '_> {
             let used = (0..values.columns).rev().find(|&column| values.whole(row, column) != -1);
             for column in 0..used.map_or(0, |last| last + 1) {
                 if values.whole(row, column) == -1 {
-                    self.say(key, &[row, column], "is -1, but a node follows; expected -1 only at the end");
+                    self.source.say(key, &[row, column], "is -1, but a node follows; expected -1 only at the end");
                     list.push(0);
                 } else {
                     list.push(self.index(key, &values, [row, column]));
@@ -242,7 +222,7 @@ impl Reader<'_, '_> {
             }
             rows.push(&list);
         }
-        self.source.check_rows(key, &rows, least, self.report);
+        self.source.check_rows(key, &rows, least);
         Some(rows)
     }
 }

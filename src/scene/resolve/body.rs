@@ -3,9 +3,9 @@
 use super::lists::Lists;
 use super::motion::axis;
 use super::table::{BodyTable, Content};
-use super::{KeyPath, Typed, direction, elements, mass, mesh, regions, vector};
+use super::{Typed, direction, elements, mass, mesh, regions, vector};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::collector::Here;
 use crate::reading::words::quoted;
 use crate::scene::SceneBody;
 use crate::scene::file::{BodyFile, Cells, Coordinates, FillKind, Lattice, SideFile, StartShape};
@@ -30,25 +30,25 @@ pub(super) struct TypedBody<'a> {
 impl<'a> TypedBody<'a> {
     /// The body at a place of a scene, whose own file is read; `None` if it has no nodes and elements. Mistakes in lists and files are
     /// reported. A surface is filled with at most so many elements.
-    pub(super) fn read(scene: &Typed<'a>, at: usize, most: u64, report: &mut Collector<'_>) -> Option<Self> {
-        let before = report.total();
-        let (file, place) = (scene.file.body[at].as_ref()?, scene.place(at));
-        let mut table = BodyTable { file, place, flawed: scene.flawed.contains("body") };
+    pub(super) fn read(scene: &Typed<'a>, at: usize, most: u64) -> Option<Self> {
+        let before = scene.report.total();
+        let (file, here) = (scene.file.body[at].as_ref()?, scene.place(at));
+        let mut table = BodyTable { file, here, flawed: scene.flawed.contains("body") };
         let mut digest = None;
         let content = if let Some(generator) = Generator::of(file) {
             Content::Generated(generator)
         } else if let Some(name) = &file.file {
-            let lists = Lists::read(scene.folder, name, table.place.clone(), scene.limits, report)?;
+            let lists = Lists::read(scene.folder, name, table.here.clone(), scene.limits)?;
             digest = Some(("file", lists.digest()));
             Content::Listed(Box::new(lists), Vec::new())
         } else if file.mesh.is_some() {
-            let mesh = mesh::read(scene.folder, &table, scene.limits, report)?;
+            let mesh = mesh::read(scene.folder, &table, scene.limits)?;
             digest = Some(("mesh", mesh.digest.clone()));
-            mesh::make(mesh, &table, most, report)?
+            mesh::make(mesh, &table, most)?
         } else {
-            Content::Listed(Box::new(Lists::typed(file, table.place.clone(), report)?), Vec::new())
+            Content::Listed(Box::new(Lists::typed(file, table.here.clone())?), Vec::new())
         };
-        table.flawed |= report.total() > before;
+        table.flawed |= scene.report.total() > before;
         Some(Self { table, content, digest })
     }
 
@@ -92,74 +92,73 @@ impl<'a> TypedBody<'a> {
     }
 
     /// Reports that it is too large.
-    pub(super) fn too_large(&self, message: String, help: String, report: &mut Collector<'_>) {
-        let keys = self.sized_by().0.iter().map(|&key| PathPart::Key(key));
-        let path: Vec<_> = self.table.place.iter().copied().chain(keys).collect();
+    pub(super) fn too_large(&self, message: String, help: String) {
+        let here = self.sized_by().0.iter().fold(self.table.here.clone(), |here, &key| here.to(key));
         match &self.content {
             Content::Listed(lists, _) => match &lists.source.file {
-                Some((name, place)) => report.at(place, format!("`{name}`: {message}"), help),
-                None => report.at_key(&path, message, help),
+                Some((name, place)) => place.wrong(format!("`{name}`: {message}"), help),
+                None => here.wrong_key(message, help),
             },
-            _ => report.at(&path, message, help),
+            _ => here.wrong(message, help),
         }
     }
 
     /// Reports mistakes in settings of a body that is too large to be made.
-    pub(super) fn check(&self, report: &mut Collector<'_>) {
+    pub(super) fn check(&self) {
         if let Content::Generated(generator) = self.content {
-            check_generator(generator, &self.table, report);
-            check_start(&self.table, generator.dimension(), report);
+            check_generator(generator, &self.table);
+            check_start(&self.table, generator.dimension());
         }
     }
 
     /// The body, or `None` after reporting every mistake in it. Its models have these moduli, if they have any.
-    pub(super) fn resolve(self, young: &[Option<f64>], report: &mut Collector<'_>) -> Option<SceneBody> {
+    pub(super) fn resolve(self, young: &[Option<f64>]) -> Option<SceneBody> {
         let Self { table, content, .. } = self;
         let body = match content {
-            Content::Generated(generator) => generated(&table, generator, report)?,
-            Content::Listed(lists, groups) => SceneBody { groups, ..listed(&table, *lists, report)? },
-            Content::Filled(of, side) => filled(&table, *of, side, report)?,
+            Content::Generated(generator) => generated(&table, generator)?,
+            Content::Listed(lists, groups) => SceneBody { groups, ..listed(&table, *lists)? },
+            Content::Filled(of, side) => filled(&table, *of, side)?,
         };
-        regions::apply(&table, body, young, report)
+        regions::apply(&table, body, young)
     }
 }
 
 /// A generated body.
-fn generated(table: &BodyTable<'_>, generator: Generator<'_>, report: &mut Collector<'_>) -> Option<SceneBody> {
-    let before = report.total();
+fn generated(table: &BodyTable<'_>, generator: Generator<'_>) -> Option<SceneBody> {
+    let before = table.here.report.total();
     let dimension = generator.dimension();
-    let along = check_generator(generator, table, report);
+    let along = check_generator(generator, table);
     let Made { nodes: rest, elements } = generator.make(along?);
     let solids = table.solids(Solids::Ordered);
     let made = Body::builder(rest).dimension(dimension).elements(elements).solids(solids).build();
-    let body = table.sound(made, report)?;
-    let mass = mass::resolve(table, &body, None, report);
-    let initial = start(table, body.rest().to_vec(), None, dimension, report);
-    if report.total() > before {
+    let body = table.sound(made)?;
+    let mass = mass::resolve(table, &body, None);
+    let initial = start(table, body.rest().to_vec(), None, dimension);
+    if table.here.report.total() > before {
         return None;
     }
-    let body = table.sound(body.with_masses(mass?), report)?;
+    let body = table.sound(body.with_masses(mass?))?;
     let side = generator.side();
     Some(SceneBody { has_cells: side.is_some(), ..table.resolved(body, initial, side) })
 }
 
 /// A surface with the elements that fill it, whose edges have a length (m).
-fn filled(table: &BodyTable<'_>, of: Filled, side: f64, report: &mut Collector<'_>) -> Option<SceneBody> {
-    let (file, before) = (table.file, report.total());
+fn filled(table: &BodyTable<'_>, of: Filled, side: f64) -> Option<SceneBody> {
+    let (file, before) = (table.file, table.here.report.total());
     let Filled { cage: Cage { nodes, elements, filled, convex, groups, volumes, overlap }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let measures = surface.measures();
     let carried = Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights });
     let made = Body::builder(nodes).elements(elements).solids(solids).fill(filled).carried(carried).build();
-    let mut body = table.sound(made, report)?;
+    let mut body = table.sound(made)?;
     // Cubes are all alike.
     if file.fill.as_ref().is_some_and(|fill| fill.with != FillKind::Cubes) {
         let stiffness = relative_stiffness(&body, side);
-        body = table.sound(body.with_stiffness(stiffness), report)?;
+        body = table.sound(body.with_stiffness(stiffness))?;
     }
-    let mass = mass::resolve(table, &body, volumes, report);
-    let initial = start(table, body.rest().to_vec(), None, Dimension::Space, report);
-    if report.total() > before {
+    let mass = mass::resolve(table, &body, volumes);
+    let initial = start(table, body.rest().to_vec(), None, Dimension::Space);
+    if table.here.report.total() > before {
         return None;
     }
     let mut mass = mass?;
@@ -170,7 +169,7 @@ fn filled(table: &BodyTable<'_>, of: Filled, side: f64, report: &mut Collector<'
         let found: f64 = mass.iter().sum();
         mass.iter_mut().for_each(|mass| *mass *= density * (measures.volume - overlap) / found);
     }
-    let body = table.sound(body.with_masses(mass), report)?;
+    let body = table.sound(body.with_masses(mass))?;
     Some(SceneBody { groups, surface_groups: surface.groups, ..table.resolved(body, initial, Some(side)) })
 }
 
@@ -183,8 +182,8 @@ fn size_of(nodes: &[DVec3], elements: &IndexLists) -> BodySize {
 
 /// Checks of a generator that the schema cannot express. Returns the direction of bars; that of other generators has no
 /// meaning.
-fn check_generator(generator: Generator<'_>, table: &BodyTable<'_>, report: &mut Collector<'_>) -> Option<DVec3> {
-    let at = |key, inner| key_path![table.place; key, inner];
+fn check_generator(generator: Generator<'_>, table: &BodyTable<'_>) -> Option<DVec3> {
+    let at = |key, inner| table.here.to(key).to(inner);
     match generator {
         Generator::Lattice(Lattice { cells, side, elements, .. }) => {
             let axes = cells.len();
@@ -194,77 +193,73 @@ fn check_generator(generator: Generator<'_>, table: &BodyTable<'_>, report: &mut
                 _ => None,
             };
             if let Some((typed, place, other)) = wrong {
-                let ([typed, other], path) = ([typed, other].map(quoted), at("lattice", "elements"));
-                let message =
-                    format!("`{}` is {typed}, but the lattice is {place}: it has {axes} `cells`", written(&path));
-                report.at(&path, message, format!("use {other}, or other `cells`"));
+                let ([typed, other], here) = ([typed, other].map(quoted), at("lattice", "elements"));
+                let message = format!("`{here}` is {typed}, but the lattice is {place}: it has {axes} `cells`");
+                here.wrong(message, format!("use {other}, or other `cells`"));
             }
             let sides = match side {
                 SideFile::PerAxis(sides) => sides.len(),
                 SideFile::Equal(_) => axes,
             };
             if sides != axes {
-                let path = at("lattice", "side");
-                let message = format!(
-                    "`{}` has {sides} entries, and `cells` has {axes}; expected one for each axis",
-                    written(&path)
-                );
-                report.at(&path, message, "or one number for all");
+                let here = at("lattice", "side");
+                let message =
+                    format!("`{here}` has {sides} entries, and `cells` has {axes}; expected one for each axis");
+                here.wrong(message, "or one number for all");
             }
             (wrong.is_none() && sides == axes).then_some(DVec3::X)
         }
         Generator::Bars(bars) => {
-            let path = at("bars", "direction");
-            let along = vector(&bars.direction, generator.dimension(), &path, report)?;
-            direction(along, &path, report)
+            let here = at("bars", "direction");
+            direction(vector(&bars.direction, generator.dimension(), &here)?, &here)
         }
         Generator::Polygon(_) | Generator::Fan(_) | Generator::Disc(_) => Some(DVec3::X),
     }
 }
 
 /// A body of listed nodes and elements.
-fn listed(table: &BodyTable<'_>, lists: Lists, report: &mut Collector<'_>) -> Option<SceneBody> {
-    let (file, before) = (table.file, report.total());
+fn listed(table: &BodyTable<'_>, lists: Lists<'_>) -> Option<SceneBody> {
+    let (file, before) = (table.file, table.here.report.total());
     let solids = table.solids(lists.solids);
     let dimension = lists.dimension;
-    elements::check(&lists, solids, table.flawed, report);
+    elements::check(&lists, solids, table.flawed);
     let count = lists.nodes.len();
     for (key, length) in [
         ("masses", lists.masses.as_ref().map(Vec::len)),
         ("positions", lists.positions.as_ref().map(Vec::len)),
         ("velocities", lists.velocities.as_ref().map(Vec::len)),
     ] {
-        length.into_iter().for_each(|length| lists.source.check_count(key, length, count, report));
+        length.into_iter().for_each(|length| lists.source.check_count(key, length, count));
     }
     // Of lists in the scene the schema says it.
     if file.file.is_some() {
         let [masses, positions, velocities] =
             [lists.masses.is_some(), lists.positions.is_some(), lists.velocities.is_some()];
         for (key, typed) in [("mass", file.mass), ("density", file.density), ("mass_total", file.mass_total)] {
-            lists.check_exclusive(masses && typed.is_some(), key, "masses", report);
+            lists.check_exclusive(masses && typed.is_some(), key, "masses");
         }
-        lists.check_exclusive(velocities && file.velocity.is_some(), "velocity", "velocities", report);
-        lists.check_exclusive(positions && file.start.is_some(), "start", "positions", report);
+        lists.check_exclusive(velocities && file.velocity.is_some(), "velocity", "velocities");
+        lists.check_exclusive(positions && file.start.is_some(), "start", "positions");
     }
     let Lists { nodes: rest, elements, springs, faces, positions, velocities, masses, .. } = lists;
-    let initial = start(table, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
-    if table.flawed || report.total() > before || elements.is_empty() {
+    let initial = start(table, positions.unwrap_or_else(|| rest.clone()), velocities, dimension);
+    if table.flawed || table.here.report.total() > before || elements.is_empty() {
         return None;
     }
     let made = Body::builder(rest).dimension(dimension).elements(elements).solids(solids).faces(faces).build();
-    let body = table.sound(made, report)?;
+    let body = table.sound(made)?;
     let masses = match masses {
         Some(listed) => listed,
-        None => mass::resolve(table, &body, None, report)?,
+        None => mass::resolve(table, &body, None)?,
     };
-    let body = table.sound(body.with_masses(masses), report)?;
+    let body = table.sound(body.with_masses(masses))?;
     Some(SceneBody { springs, ..table.resolved(body, initial, None) })
 }
 
 /// The body of a recording, called like its run, with its state at the start.
-pub(super) fn recorded(lists: Lists, name: String, start: State, report: &mut Collector<'_>) -> Option<SceneBody> {
-    let table = BodyTable { file: &BodyFile::default(), place: lists.source.body.clone(), flawed: false };
-    Some(SceneBody { name, initial: start, ..listed(&table, lists, report)? })
+pub(super) fn recorded(lists: Lists<'_>, name: String, start: State) -> Option<SceneBody> {
+    let table = BodyTable { file: &BodyFile::default(), here: lists.source.body.clone(), flawed: false };
+    Some(SceneBody { name, initial: start, ..listed(&table, lists)? })
 }
 
 /// The initial positions and velocities of the body, from its listed positions (m) and velocities (m/s), if any.
@@ -273,9 +268,8 @@ fn start(
     mut position: Vec<DVec3>,
     velocities: Option<Vec<DVec3>>,
     dimension: Dimension,
-    report: &mut Collector<'_>,
 ) -> State {
-    let (shape, turn, spin, offset, velocity) = check_start(table, dimension, report);
+    let (shape, turn, spin, offset, velocity) = check_start(table, dimension);
     if let Some((shape, direction, seed)) = shape {
         brought_to_start(&mut position, shape, direction, seed, dimension);
     }
@@ -303,46 +297,43 @@ fn start(
 fn check_start(
     table: &BodyTable<'_>,
     dimension: Dimension,
-    report: &mut Collector<'_>,
 ) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
-    let file = table.file;
+    let (file, here) = (table.file, &table.here);
     let shape = file.start.as_ref().and_then(|typed| {
-        check_use(typed.shape, &table.place, report);
-        let path = key_path![table.place; "start", "direction"];
+        check_use(typed.shape, &here.to("start"));
+        let at = here.to("start").to("direction");
         let along = match &typed.direction {
             // Reported above.
             Some(_) if !typed.shape.has_direction() => DVec3::X,
-            Some(along) => direction(vector(along, dimension, &path, report)?, &path, report)?,
+            Some(along) => direction(vector(along, dimension, &at)?, &at)?,
             None => DVec3::X,
         };
         Some((typed.shape, along, typed.seed))
     });
-    let turn = file.rotation.as_ref().and_then(|typed| {
-        let path = table.at("rotation");
-        Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
-    });
-    let spin = file.spin.as_ref().and_then(|typed| {
-        let path = table.at("spin");
-        Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
-    });
-    let mut optional = |typed: &Option<Coordinates>, key| match typed {
-        Some(typed) => vector(typed, dimension, &table.at(key), report).unwrap_or_default(),
+    let turn = file
+        .rotation
+        .as_ref()
+        .and_then(|typed| Some((axis(typed.axis.as_ref(), dimension, &here.to("rotation"))?, typed.angle)));
+    let spin =
+        file.spin.as_ref().and_then(|typed| Some(axis(typed.axis.as_ref(), dimension, &here.to("spin"))? * typed.rate));
+    let optional = |typed: &Option<Coordinates>, key| match typed {
+        Some(typed) => vector(typed, dimension, &here.to(key)).unwrap_or_default(),
         None => DVec3::ZERO,
     };
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// Reports keys of a start that do not belong to its shape.
-fn check_use(shape: StartShape, place: &KeyPath, report: &mut Collector<'_>) {
+fn check_use(shape: StartShape, start: &Here<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),
         ("seed", shape == StartShape::Cloud, "clouds"),
     ];
     for (key, used, about) in about {
-        let path = key_path![place; "start", key];
-        if !used && report.is_typed(&path) {
-            let message = format!("`{}` is about {about}, but the shape is {}", written(&path), quoted(&typed(&shape)));
-            report.at_key(&path, message, "remove it, or use another shape");
+        let here = start.to(key);
+        if !used && here.is_typed() {
+            let message = format!("`{here}` is about {about}, but the shape is {}", quoted(&typed(&shape)));
+            here.wrong_key(message, "remove it, or use another shape");
         }
     }
 }

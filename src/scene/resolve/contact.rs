@@ -1,10 +1,10 @@
 //! How surfaces meet: names of pairs, thicknesses, and bodies that overlap at the start.
 
+use super::Typed;
 use super::choice::{Choice, check_names};
 use super::obstacles::shape_name;
-use super::{KeyPath, Typed};
 use crate::reading::captions::quantity;
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::collector::{Collector, Here, key_path};
 use crate::reading::words::{count, list, nearest, quoted};
 use crate::scene::file::{BodyFile, PairFile, ShapeFile};
 use crate::scene::{Run, Scene, SceneBody};
@@ -14,72 +14,64 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Reports names of obstacles that are not unique, or are those of bodies.
-pub(super) fn check_obstacle_names(scene: &Typed<'_>, report: &mut Collector<'_>) {
-    let named =
-        || (0..).zip(&scene.file.obstacle).map(|(at, one)| (at, one.as_ref().and_then(|one| one.name.as_deref())));
-    check_names(
-        ["obstacle", "obstacles"],
-        named().map(|(at, name)| (key_path!["obstacle", at].to_vec(), name)),
-        report,
-    );
+pub(super) fn check_obstacle_names(scene: &Typed<'_>) {
+    let named = || scene.each("obstacle", &scene.file.obstacle).map(|(here, one)| (here, one.name.as_deref()));
+    check_names(["obstacle", "obstacles"], named());
     let bodies: BTreeSet<_> = scene.file.body.iter().flatten().filter_map(|body| body.name.as_deref()).collect();
-    for (at, name) in named().filter_map(|(at, name)| Some((at, name.filter(|name| bodies.contains(name))?))) {
+    for (here, name) in named().filter_map(|(here, name)| Some((here, name.filter(|name| bodies.contains(name))?))) {
         let message = format!("a body and an obstacle are called {}", quoted(name));
-        report.at(&key_path!["obstacle", at, "name"], message, "give the obstacle another name");
+        here.to("name").wrong(message, "give the obstacle another name");
     }
 }
 
 /// Contact of surfaces; `None` for contact of nodes, or after reporting a mistake.
-pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Collector<'_>) -> Option<Contacts> {
+pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Contacts> {
+    let contact = scene.report.here(&key_path!["contact"]);
     if scene.file.meets_by_nodes() {
-        check_idle(scene, report);
+        check_idle(scene, &contact);
         return None;
     }
-    check_friction_of(scene, report);
+    check_friction_of(scene);
     let typed = scene.file.contact.clone().unwrap_or_default();
     let of_body = |(at, typed): (usize, &Option<BodyFile>)| {
         let typed = typed.as_ref()?;
         if let Some(thickness) = typed.thickness {
-            check_thickness(thickness, &bodies[at..=at], &key_path![scene.place(at); "thickness"], report);
+            check_thickness(thickness, bodies[at..=at].iter(), &scene.place(at).to("thickness"));
         }
         Some(BodyContact { thickness: typed.thickness, itself: typed.self_contact })
     };
     let of_bodies = scene.file.body.iter().enumerate().map(of_body).collect::<Option<Vec<_>>>()?;
     let mut pairs = Vec::new();
     for (at, pair) in typed.pair.iter().enumerate() {
-        let path = key_path!["contact", "pair", at].to_vec();
-        pairs.extend(resolve_pair(scene, pair, bodies, &pairs, &path, report));
+        pairs.extend(resolve_pair(scene, pair, bodies, &pairs, &contact.to("pair").to(at)));
     }
     Some(Contacts { restitution: typed.restitution, friction: typed.friction, bodies: of_bodies, pairs })
 }
 
 /// Reports keys that have no effect where nodes alone meet obstacles.
-fn check_idle(scene: &Typed<'_>, report: &mut Collector<'_>) {
-    let of_contact = ["restitution", "friction", "separate", "pair"].map(|key| key_path!["contact", key].to_vec());
-    let of_body = |body| ["self_contact", "thickness"].map(|key| key_path![scene.place(body); key].to_vec());
-    for path in of_contact.into_iter().chain((0..scene.file.body.len()).flat_map(of_body)) {
-        if report.is_typed(&path) {
-            let message = format!("`{}` has no effect, as `contact.rule` is \"nodes\"", written(&path));
-            report.at_key(&path, message, "remove it, or write contact.rule = \"surfaces\"");
-        }
+fn check_idle(scene: &Typed<'_>, contact: &Here<'_>) {
+    let of_contact = ["restitution", "friction", "separate", "pair"].map(|key| contact.to(key));
+    let of_body = |body| ["self_contact", "thickness"].map(|key| scene.place(body).to(key));
+    for here in of_contact.into_iter().chain((0..scene.file.body.len()).flat_map(of_body)).filter(Here::is_typed) {
+        let message = format!("`{here}` has no effect, as `contact.rule` is \"nodes\"");
+        here.wrong_key(message, "remove it, or write contact.rule = \"surfaces\"");
     }
 }
 
 /// Reports `friction_of` where surfaces meet an obstacle.
-fn check_friction_of(scene: &Typed<'_>, report: &mut Collector<'_>) {
-    for (at, obstacle) in scene.file.obstacle.iter().enumerate() {
-        let path = key_path!["obstacle", at, "friction_of"];
-        let is_met_by_nodes = |shape: &ShapeFile| matches!(shape, ShapeFile::Floor { .. } | ShapeFile::Plate { .. });
-        if report.is_typed(&path) && obstacle.as_ref().is_some_and(|one| !is_met_by_nodes(&one.shape)) {
+fn check_friction_of(scene: &Typed<'_>) {
+    for (here, obstacle) in scene.each("obstacle", &scene.file.obstacle) {
+        let is_met_by_nodes = matches!(obstacle.shape, ShapeFile::Floor { .. } | ShapeFile::Plate { .. });
+        if here.to("friction_of").is_typed() && !is_met_by_nodes {
             let message =
                 "`friction_of` has no effect, as surfaces meet this obstacle: their friction acts on the path";
-            report.at_key(&path, message, "remove it, or write contact.rule = \"nodes\"");
+            here.to("friction_of").wrong_key(message, "remove it, or write contact.rule = \"nodes\"");
         }
     }
 }
 
 /// Reports pairs of bodies and obstacles that are in no run together.
-pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &mut Collector<'_>) {
+pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &Collector<'_>) {
     for (at, PairContact { of, .. }) in contacts.pairs.iter().enumerate() {
         let bodies: Vec<_> =
             of.iter().filter_map(|side| if let Side::Body(at) = side { Some(*at) } else { None }).collect();
@@ -94,7 +86,7 @@ pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &mut Colle
 }
 
 /// Reports thicknesses of bodies that meet half-spaces alone, with their nodes.
-pub(super) fn check_idle_thickness(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>, report: &mut Collector<'_>) {
+pub(super) fn check_idle_thickness(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>) {
     let has_solids = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
     for (at, (body, own)) in scene.bodies.iter().zip(&contacts.bodies).enumerate() {
         let meets = |run: &Run| run.recording.is_none() && run.of.len() > 1 && run.of.contains(&at);
@@ -102,18 +94,18 @@ pub(super) fn check_idle_thickness(scene: &Scene, contacts: &Contacts, typed: &T
         if own.thickness.is_some() && !counts {
             let message =
                 format!("the thickness of {} changes nothing: it meets half-spaces with its nodes", body.in_words());
-            report.at(&key_path![typed.place(at); "thickness"], message, "remove it");
+            typed.place(at).to("thickness").wrong(message, "remove it");
         }
     }
 }
 
 /// Reports a thickness (m) larger than a cell of some bodies.
-fn check_thickness(thickness: f64, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut Collector<'_>) {
-    let Some(finest) = bodies.iter().min_by(|one, other| one.side.total_cmp(&other.side)) else { return };
+fn check_thickness<'b>(thickness: f64, bodies: impl Iterator<Item = &'b SceneBody>, here: &Here<'_>) {
+    let Some(finest) = bodies.min_by(|one, other| one.side.total_cmp(&other.side)) else { return };
     if thickness > finest.side {
         let [found, cell] = [thickness, finest.side].map(|length| quantity(length, "m"));
         let message = format!("the thickness {found} is larger than a cell of {}, {cell}", finest.in_words());
-        report.at(path, message, format!("expected at most {cell}"));
+        here.wrong(message, format!("expected at most {cell}"));
     }
 }
 
@@ -123,14 +115,13 @@ fn resolve_pair(
     typed: &PairFile,
     bodies: &[SceneBody],
     earlier: &[PairContact],
-    path: &KeyPath,
-    report: &mut Collector<'_>,
+    here: &Here<'_>,
 ) -> Option<PairContact> {
-    let of = [0, 1].map(|at| side(scene, &typed.of[at], &key_path![path; "of", at], report));
+    let of = [0, 1].map(|at| side(scene, &typed.of[at], &here.to("of").to(at)));
     let of = [of[0]?, of[1]?];
     let [one, other] = [0, 1].map(|at| quoted(&typed.of[at]));
-    let mut wrong = |message: String, help: &str| {
-        report.at(&key_path![path; "of"], message, help);
+    let wrong = |message: String, help: &str| {
+        here.to("of").wrong(message, help);
         None
     };
     if of[0] == of[1] {
@@ -152,19 +143,15 @@ fn resolve_pair(
         return wrong(message, "give it a `restitution`, a `friction` or a `thickness`, or remove it");
     }
     if let Some(thickness) = typed.thickness {
-        let of_pair: Vec<_> = of
-            .iter()
-            .filter_map(|side| if let Side::Body(at) = side { bodies.get(*at) } else { None })
-            .cloned()
-            .collect();
-        check_thickness(thickness, &of_pair, &key_path![path; "thickness"], report);
+        let of_pair = of.iter().filter_map(|side| if let Side::Body(at) = side { bodies.get(*at) } else { None });
+        check_thickness(thickness, of_pair, &here.to("thickness"));
     }
     let PairFile { restitution, friction, thickness, .. } = *typed;
     Some(PairContact { of, restitution, friction, thickness })
 }
 
 /// The body or obstacle of a name.
-fn side(scene: &Typed<'_>, name: &str, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Side> {
+fn side(scene: &Typed<'_>, name: &str, here: &Here<'_>) -> Option<Side> {
     let bodies = scene.file.body.iter().map(|body| body.as_ref().and_then(|body| body.name.as_deref()));
     let obstacles = scene.file.obstacle.iter().map(|one| one.as_ref().and_then(|one| one.name.as_deref()));
     let sides = bodies.enumerate().map(|(at, name)| (name, Side::Body(at)));
@@ -176,7 +163,7 @@ fn side(scene: &Typed<'_>, name: &str, path: &[PathPart<'_>], report: &mut Colle
             None if names.is_empty() => "no body and no obstacle has a `name`; give them one".to_owned(),
             None => format!("the names are {}", list(&names, "and", quoted)),
         };
-        report.at(path, format!("there is no body or obstacle {}", quoted(name)), help);
+        here.wrong(format!("there is no body or obstacle {}", quoted(name)), help);
         return None;
     };
     if let Side::Obstacle(at) = side
@@ -184,14 +171,14 @@ fn side(scene: &Typed<'_>, name: &str, path: &[PathPart<'_>], report: &mut Colle
             scene.file.obstacle[at].as_ref().map(|obstacle| &obstacle.shape)
     {
         let message = format!("{} is a half-space, which all bodies meet in the same way", quoted(name));
-        report.at(path, message, "give the obstacle its own `restitution` and `friction`");
+        here.wrong(message, "give the obstacle its own `restitution` and `friction`");
         return None;
     }
     Some(side)
 }
 
 /// Warns of models whose elements break, where surfaces can meet.
-pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
+pub(super) fn warn_of_breaking(scene: &Scene, report: &Collector<'_>) {
     let Some(contacts) = &scene.contacts else { return };
     let has_extent = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
     for (at, run) in scene.runs.iter().enumerate() {
@@ -215,7 +202,7 @@ pub(super) fn warn_of_breaking(scene: &Scene, report: &mut Collector<'_>) {
 
 /// Warns of steps in which nodes move so far relative to others, or to obstacles, at the speeds of the start and of paths, that features may pass
 /// each other sideways.
-pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &mut Collector<'_>) {
+pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &Collector<'_>) {
     /// The longest way in a step, in cells: above it some facets of blocks that met at random crossed for a few steps (`docs/contact.md`).
     const LONGEST: f64 = 0.5;
     let is_solid = |one: &&Obstacle| !one.shape.is_half_space();
@@ -334,19 +321,19 @@ fn or_separate(overlap: &Overlap, typed: &Typed<'_>) -> &'static str {
 }
 
 /// Warns of bodies that overlap at the start of a run, where nodes alone meet obstacles.
-pub(super) fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+pub(super) fn warn_of_overlaps(scene: &Scene, typed: &Typed<'_>) {
     let mut found = overlaps(scene, &[], &Contacts::default());
     found.retain(|_, overlap| overlap.depth > 0.0);
     let Some((&[first, second], _)) = found.first_key_value() else { return };
     let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
     let more = and_others(found.len());
     let message = format!("{one} and {other} overlap at the start{more}: bodies go through each other");
-    report.warn(&typed.place(second), message, "move one of them, with `offset` or `lowest`, unless they may overlap");
+    typed.place(second).warn(message, "move one of them, with `offset` or `lowest`, unless they may overlap");
 }
 
 /// Reports bodies that overlap or touch each other, or obstacles, at the start of a run: contact keeps surfaces apart, but cannot part
 /// them.
-pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>, report: &mut Collector<'_>) {
+pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>) {
     let found = overlaps(scene, &scene.obstacles, contacts);
     let pairs = found.keys().filter(|of| of[1] < scene.bodies.len()).count();
     let of_bodies = found.iter().find(|(of, _)| of[1] < scene.bodies.len());
@@ -371,7 +358,7 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
             true => "move these nodes apart, join them if they are one, or remove `self_contact`".to_owned(),
             false => format!("move one of them, with `offset` or `lowest`{}", or_separate(overlap, typed)),
         };
-        report.at(&typed.place(second), message, help);
+        typed.place(second).wrong(message, help);
     }
     for (&[body, obstacle], overlap) in found.iter().filter(|(of, _)| of[1] >= scene.bodies.len()) {
         let number = obstacle - scene.bodies.len();
@@ -400,6 +387,6 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
                 format!("move one of them{}; a path can move the obstacle there later", or_separate(overlap, typed))
             }
         };
-        report.at(&key_path!["obstacle", number], message, help);
+        typed.report.at(&key_path!["obstacle", number], message, help);
     }
 }

@@ -1,7 +1,7 @@
 //! Elements whose nodes are in another order than expected, in words.
 
 use super::lists::Lists;
-use crate::reading::collector::{Collector, PathPart};
+use crate::reading::collector::PathPart;
 use crate::reading::words::{count, list};
 use crate::sim::{Dimension, ElementKind};
 
@@ -28,7 +28,7 @@ pub(super) struct Disorder {
 
 impl Disorder {
     /// Reports each kind of mistake in one message.
-    pub(super) fn report(self, lists: &Lists, report: &mut Collector<'_>) {
+    pub(super) fn report(self, lists: &Lists<'_>) {
         for wrong in [Wrong::Flat, Wrong::Around, Wrong::Turned] {
             let found: Vec<_> = self.found.iter().filter(|one| one.1 == wrong).map(|one| (one.0, one.2)).collect();
             let (at, (message, help)) = match found[..] {
@@ -39,13 +39,18 @@ impl Disorder {
                     (if is_all { vec![] } else { vec![first] }, in_common(lists, wrong, &found, is_all))
                 }
             };
-            lists.source.report(report, "elements", &at, message, help);
+            lists.source.report("elements", &at, message, help);
         }
     }
 }
 
 /// The mistake of several elements, given by number and kind, and the remedy.
-fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all: bool) -> (String, Option<String>) {
+fn in_common(
+    lists: &Lists<'_>,
+    wrong: Wrong,
+    found: &[(usize, ElementKind)],
+    is_all: bool,
+) -> (String, Option<String>) {
     /// The most elements that are named.
     const NAMED: usize = 5;
     let (what, help) = match (wrong, lists.dimension) {
@@ -93,7 +98,7 @@ fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all
 }
 
 /// The mistake of one element, and the remedy.
-fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
+fn in_words(lists: &Lists<'_>, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
     let (name, element) = (lists.source.name("elements", &[at]), &lists.elements[at]);
     match (wrong, kind) {
         (Wrong::Flat, ElementKind::Polygon) => {
@@ -120,8 +125,8 @@ fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (Strin
 }
 
 /// The remedy that allows any order; `None` for a body of a recording, which has no such key.
-fn convex(lists: &Lists) -> Option<String> {
-    let is_typed = lists.source.body.first() == Some(&PathPart::Key("body"));
+fn convex(lists: &Lists<'_>) -> Option<String> {
+    let is_typed = lists.source.body.path().first() == Some(&PathPart::Key("body"));
     is_typed.then(|| "write convex = true in [body] for nodes in any order".to_owned())
 }
 

@@ -3,7 +3,7 @@
 use super::Typed;
 use crate::look::{View, font};
 use crate::reading::captions::rounded;
-use crate::reading::collector::{Collector, key_path, written};
+use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{count, ends, quoted, short};
 use crate::scene::file::{MotionPath, Positive, SceneFile, ShapeFile};
 use crate::scene::mesh::longest;
@@ -12,43 +12,45 @@ use crate::scene::{Run, Scene, SceneBody};
 use std::f64::consts::TAU;
 
 /// Warns of all that is probably not meant.
-pub(super) fn warn(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+pub(super) fn warn(scene: &Scene, typed: &Typed<'_>) {
+    let report = typed.report;
     warn_of_missing_letters(scene, report);
-    warn_of_unused(scene, typed, report);
+    warn_of_unused(scene, typed);
     warn_of_time(scene, report);
     warn_of_uneven_rows(scene, report);
-    warn_of_late(scene, typed, report);
-    warn_of_rising_loads(scene, typed, report);
-    warn_of_degrees(scene, typed, report);
+    warn_of_late(scene, typed);
+    warn_of_rising_loads(scene, typed);
+    warn_of_degrees(scene, typed);
     warn_of_steps(scene, report);
     match &scene.contacts {
         Some(contacts) => super::contact::warn_of_ways(scene, contacts, report),
-        None => super::contact::warn_of_overlaps(scene, typed, report),
+        None => super::contact::warn_of_overlaps(scene, typed),
     }
     super::contact::warn_of_breaking(scene, report);
     warn_of_braked_rotation(scene, report);
-    warn_of_sizes(scene, typed, report);
+    warn_of_sizes(scene, typed);
     if let Some((run, [message, help])) = scene.too_soft() {
         report.warn(&key_path!["run", run, "model"], message, help);
     }
 }
 
 /// Warns of bodies that no run has. A recording with a body of its own has no other.
-fn warn_of_unused(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+fn warn_of_unused(scene: &Scene, typed: &Typed<'_>) {
     let several = if typed.file.body.len() > 1 { typed.file.body.len() } else { 0 };
     for body in (0..several).filter(|body| scene.runs.iter().all(|run| !run.of.contains(body))) {
         let message = format!("no run has {}", scene.bodies[body].in_words());
-        report.warn(&typed.place(body), message, "add it to `bodies` of a run, or remove it");
+        typed.place(body).warn(message, "add it to `bodies` of a run, or remove it");
     }
 }
 
 /// Warns of texts in pictures with characters that no font has.
-fn warn_of_missing_letters(scene: &Scene, report: &mut Collector<'_>) {
+fn warn_of_missing_letters(scene: &Scene, report: &Collector<'_>) {
     let View { title, caption, clock, look, .. } = &scene.view;
     let around = [("title", title), ("caption", caption), ("clock", clock)];
-    let around = around.into_iter().map(|(key, text)| (key_path!["view", key].to_vec(), text));
-    let runs = scene.runs.iter().enumerate().map(|(at, run)| (key_path!["run", at, "name"].to_vec(), &run.name));
-    for (path, text) in around.chain(runs) {
+    let around = around.into_iter().map(|(key, text)| (report.here(&key_path!["view", key]), text));
+    let runs = scene.runs.iter().enumerate();
+    let runs = runs.map(|(at, run)| (report.here(&key_path!["run", at, "name"]), &run.name));
+    for (here, text) in around.chain(runs) {
         let missing = font::missing(&look.font, text);
         let letter = |&letter: &char| format!("{} (U+{:04X})", quoted(&letter.to_string()), u32::from(letter));
         let (letters, what) = match &missing[..] {
@@ -64,12 +66,12 @@ fn warn_of_missing_letters(scene: &Scene, report: &mut Collector<'_>) {
             ),
         };
         let help = "write it in other letters, or give a `view.font` that has them";
-        report.warn(&path, format!("no font has {letters}, so that {what}"), help);
+        here.warn(format!("no font has {letters}, so that {what}"), help);
     }
 }
 
 /// Warns of a scene with one frame, and of a very long computation.
-fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
+fn warn_of_time(scene: &Scene, report: &Collector<'_>) {
     /// Computation time for one corner of an element and one step (s), measured on one cube.
     const CORNER: f64 = 3e-8;
     const LONG: f64 = 7200.0;
@@ -112,7 +114,7 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
 }
 
 /// Warns of rows of frames that do not end an interval of mean forces.
-fn warn_of_uneven_rows(scene: &Scene, report: &mut Collector<'_>) {
+fn warn_of_uneven_rows(scene: &Scene, report: &Collector<'_>) {
     let Some(every) = scene.every.filter(|_| scene.keeps_forces()) else { return };
     let rows = 1.0 / (scene.frames_per_second * every);
     if (rows - rows.round()).abs() > 1e-6 * rows {
@@ -123,76 +125,66 @@ fn warn_of_uneven_rows(scene: &Scene, report: &mut Collector<'_>) {
 }
 
 /// Warns of what begins only when the scene has ended.
-fn warn_of_late(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+fn warn_of_late(scene: &Scene, typed: &Typed<'_>) {
     /// The time (s) until which an obstacle stands still: the pose of the first key holds from the start.
     fn first_move(path: &MotionPath) -> Option<f64> {
         path.keys.get(1).and(path.keys.first()).map(|key| key.time)
     }
     let SceneFile { load, hold, grab, obstacle, .. } = typed.file;
-    let loads =
-        load.iter().enumerate().filter_map(|(at, load)| Some((key_path!["load", at].to_vec(), load.as_ref()?.begin())));
-    let holds =
-        hold.iter().enumerate().filter_map(|(at, hold)| Some((key_path!["hold", at].to_vec(), hold.as_ref()?.from)));
-    let grabs = grab
-        .iter()
-        .enumerate()
-        .filter_map(|(at, grab)| Some((key_path!["grab", at].to_vec(), grab.as_ref()?.path.keys.first()?.time)));
-    let paths = obstacle.iter().enumerate().filter_map(|(at, obstacle)| {
-        Some((key_path!["obstacle", at, "path"].to_vec(), first_move(obstacle.as_ref()?.path.as_ref()?)?))
-    });
+    let loads = typed.each("load", load).map(|(here, load)| (here, load.begin()));
+    let holds = typed.each("hold", hold).map(|(here, hold)| (here, hold.from));
+    let grabs = typed.each("grab", grab).filter_map(|(here, grab)| Some((here, grab.path.keys.first()?.time)));
+    let paths = typed.each("obstacle", obstacle);
+    let paths = paths.filter_map(|(here, one)| Some((here.to("path"), first_move(one.path.as_ref()?)?)));
     let begins = loads.chain(holds).chain(grabs).chain(paths);
-    for (path, time) in begins.filter(|&(_, time)| time >= scene.duration && scene.duration > 0.0) {
-        let (name, [time, end]) = (written(&path), [time, scene.duration].map(short));
-        let message = format!("`{name}` does nothing: it begins at {time} s, and the scene ends at {end} s");
-        report.warn(&path, message, "let it begin earlier, or make `duration` longer");
+    for (here, time) in begins.filter(|&(_, time)| time >= scene.duration && scene.duration > 0.0) {
+        let [time, end] = [time, scene.duration].map(short);
+        let message = format!("`{here}` does nothing: it begins at {time} s, and the scene ends at {end} s");
+        here.warn(message, "let it begin earlier, or make `duration` longer");
     }
 }
 
 /// Warns of loads that are 0 in a scene without a duration, and of those that are not whole before the end.
-fn warn_of_rising_loads(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
-    for (at, load) in typed.file.load.iter().enumerate() {
-        let (Some(load), path) = (load, key_path!["load", at]) else { continue };
-        let (name, ramp) = (written(&path), load.ramp.map(|Positive(ramp)| load.from + ramp));
+fn warn_of_rising_loads(scene: &Scene, typed: &Typed<'_>) {
+    for (here, load) in typed.each("load", &typed.file.load) {
+        let ramp = load.ramp.map(|Positive(ramp)| load.from + ramp);
         let is_zero = load.from > 0.0 || ramp.is_some() || load.shares().first().is_some_and(|key| key.share == 0.0);
         if scene.duration == 0.0 && is_zero {
-            let message = format!("`{name}` does nothing: it is 0 at the start, and the scene has no duration");
-            report.warn(&path, message, "leave out `from`, `ramp` and `keys`");
+            let message = format!("`{here}` does nothing: it is 0 at the start, and the scene has no duration");
+            here.warn(message, "leave out `from`, `ramp` and `keys`");
         } else if let Some(end) = ramp.filter(|_| load.from < scene.duration) {
             let until = load.until.unwrap_or(f64::INFINITY);
             let (what, last) = if until < scene.duration { ("it", until) } else { ("the scene", scene.duration) };
             if end > last {
                 let [end, last] = [end, last].map(short);
-                let message = format!("`{name}` is never whole: it rises until {end} s, and {what} ends at {last} s");
-                report.warn(&path, message, "make `ramp` shorter, or let the load and the scene last longer");
+                let message = format!("`{here}` is never whole: it rises until {end} s, and {what} ends at {last} s");
+                here.warn(message, "make `ramp` shorter, or let the load and the scene last longer");
             }
         }
     }
 }
 
 /// Warns of angles of more than a whole turn that turn something once.
-fn warn_of_degrees(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+fn warn_of_degrees(scene: &Scene, typed: &Typed<'_>) {
     let bodies = typed.file.body.iter().enumerate();
     let bodies = bodies.filter_map(|(at, body)| {
         let angle = body.as_ref()?.rotation.as_ref()?.angle;
-        Some((key_path![typed.place(at); "rotation", "angle"], angle))
+        Some((typed.place(at).to("rotation").to("angle"), angle))
     });
-    let obstacles =
-        typed.file.obstacle.iter().enumerate().filter_map(|(at, obstacle)| match &obstacle.as_ref()?.shape {
-            ShapeFile::Box { rotation: Some(rotation), .. } => {
-                Some((key_path!["obstacle", at, "rotation", "angle"].to_vec(), rotation.angle))
-            }
-            _ => None,
-        });
-    let camera = (key_path!["view", "camera", "azimuth"].to_vec(), scene.view.camera.azimuth);
-    for (path, angle) in bodies.chain(obstacles).chain([camera]).filter(|(_, angle)| angle.abs() > TAU) {
-        let (name, [turned, degrees]) = (written(&path), [angle, rounded(angle.to_radians(), 4)].map(short));
-        let message = format!("`{name}` is {turned} rad, more than a whole turn");
-        report.warn(&path, message, format!("angles are in radians: {turned}° are {degrees}"));
+    let obstacles = typed.each("obstacle", &typed.file.obstacle).filter_map(|(here, one)| match &one.shape {
+        ShapeFile::Box { rotation: Some(rotation), .. } => Some((here.to("rotation").to("angle"), rotation.angle)),
+        _ => None,
+    });
+    let camera = (typed.report.here(&key_path!["view", "camera", "azimuth"]), scene.view.camera.azimuth);
+    for (here, angle) in bodies.chain(obstacles).chain([camera]).filter(|(_, angle)| angle.abs() > TAU) {
+        let [turned, degrees] = [angle, rounded(angle.to_radians(), 4)].map(short);
+        let message = format!("`{here}` is {turned} rad, more than a whole turn");
+        here.warn(message, format!("angles are in radians: {turned}° are {degrees}"));
     }
 }
 
 /// Warns of steps near or above the largest stable one, or with which bodies are soft, and of integrators that are never stable.
-fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
+fn warn_of_steps(scene: &Scene, report: &Collector<'_>) {
     for run in 0..scene.runs.len() {
         let of_step = scene.near_limit(run).into_iter().chain(scene.softened(run)).map(|doubt| ("step", doubt));
         for (key, [message, help]) in of_step.chain(scene.never_stable(run).map(|doubt| ("integrator", doubt))) {
@@ -205,24 +197,21 @@ fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
 }
 
 /// Warns of damping that also brakes rotation where bodies turn, unless it is asked for by name.
-fn warn_of_braked_rotation(scene: &Scene, report: &mut Collector<'_>) {
-    for run in 0..scene.runs.len() {
-        if let Some([message, help]) = scene.brakes_rotation(run) {
-            let own = key_path!["run", run, "model"];
-            let names = scene.runs[run].of.iter().map(|&body| scene.bodies[body].name.as_str());
-            let by_name = names.map(|name| key_path!["run", run, "models", name, "damping_of"]);
-            let is_named = by_name.into_iter().any(|path| report.is_typed(&path))
-                || report.is_typed(&key_path![own; "damping_of"]);
-            let path = if report.is_typed(&own) { own } else { key_path!["run", run, "models"] };
-            if !is_named {
-                report.warn(&path, message, help);
+fn warn_of_braked_rotation(scene: &Scene, report: &Collector<'_>) {
+    for (at, run) in scene.runs.iter().enumerate() {
+        if let Some([message, help]) = scene.brakes_rotation(at) {
+            let here = report.here(&key_path!["run", at]);
+            let (own, models) = (here.to("model"), here.to("models"));
+            let by_name = run.of.iter().map(|&body| models.to(&*scene.bodies[body].name));
+            if !by_name.chain([own.clone()]).any(|model| model.to("damping_of").is_typed()) {
+                if own.is_typed() { own } else { models }.warn(message, help);
             }
         }
     }
 }
 
 /// Warns of sizes far from metres, unless a `scale` is given, and of recordings of another size.
-fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
+fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>) {
     let length = |SceneBody { body, .. }: &SceneBody| longest(body.carried().map_or(body.rest(), |fine| &fine.rest));
     let sizes = scene.bodies.iter().map(length).zip(typed.file.body.iter().flatten()).enumerate();
     let long: Vec<_> = sizes.filter(|(_, (length, file))| *length >= LONG && file.scale.is_none()).collect();
@@ -231,24 +220,23 @@ fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>, report: &mut Collector<'_>) {
         let more = if long.len() > 1 { ", as are others" } else { "" };
         let length = short(length);
         match &file.mesh {
-            Some(name) => report.warn(
-                &key_path![place; "mesh"],
+            Some(name) => place.to("mesh").warn(
                 format!("`{name}` is {length} m long{more}, as no `scale` is given"),
                 "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre",
             ),
-            None => report.warn(
-                &place,
+            None => place.warn(
                 format!("{} is {length} m long{more}", scene.bodies[at].in_words()),
                 "lengths are in metres: divide those of the body by 1000 if they are in millimetres, unless it is that long",
             ),
         }
     }
     for run in 0..scene.runs.len() {
+        let here = typed.report.here(&key_path!["run", run]);
         // A scale that was given is meant.
-        if !report.is_typed(&key_path!["run", run, "scale"])
+        if !here.to("scale").is_typed()
             && let Some([message, help]) = scene.misfits(run)
         {
-            report.warn(&key_path!["run", run, "states"], message, help);
+            here.to("states").warn(message, help);
         }
     }
 }

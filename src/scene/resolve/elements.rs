@@ -2,7 +2,6 @@
 
 use super::disorder::{AROUND, Disorder, Wrong};
 use super::lists::{ListSource, Lists};
-use crate::reading::collector::Collector;
 use crate::reading::words::count;
 use crate::scene::mesh::crossing;
 use crate::sim::geometry::{Alike, bounds, kind, volume_by_faces};
@@ -15,7 +14,7 @@ const FLAT: f64 = 1e-12;
 
 /// Reports every wrong index, repeated node, repeated element or spring, degenerate or inverted element, and every node
 /// without element or spring. If there were mistakes before (`flawed`), their consequences are not reported.
-pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Collector<'_>) {
+pub(super) fn check(lists: &Lists<'_>, solids: Solids, flawed: bool) {
     let Lists { source, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
     let mut held = vec![false; node_count];
@@ -23,56 +22,49 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Co
     let mut distinct = Vec::new();
     let mut known = Alike::new(elements.len());
     for (at, element) in elements.iter().enumerate() {
-        if !check_indices(source, "elements", at, element, node_count, report) {
+        if !check_indices(source, "elements", at, element, node_count) {
             are_valid = false;
             continue;
         }
         element.iter().for_each(|&node| held[node as usize] = true);
-        if !repeated(source, "elements", at, |at| &elements[at], &mut known, report) {
+        if !repeated(source, "elements", at, |at| &elements[at], &mut known) {
             distinct.push(at);
         }
     }
     // With some wrong indices, others may be wrong too.
     if are_valid {
         let mut disorder = Disorder::default();
-        distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
-        disorder.report(lists, report);
+        distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder));
+        disorder.report(lists);
     }
     let springs = springs.as_deref().unwrap_or_default();
     let mut known = Alike::new(springs.len());
     for (at, spring) in springs.iter().enumerate() {
-        if check_indices(source, "springs", at, spring, node_count, report) {
+        if check_indices(source, "springs", at, spring, node_count) {
             spring.iter().for_each(|&node| held[node as usize] = true);
-            repeated(source, "springs", at, |at| &springs[at], &mut known, report);
+            repeated(source, "springs", at, |at| &springs[at], &mut known);
         } else {
             are_valid = false;
         }
     }
     for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
-        check_indices(source, "faces", at, face, node_count, report);
+        check_indices(source, "faces", at, face, node_count);
     }
     // A wrong index leaves the right node without an element. That is one mistake.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| are_valid && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-        source.report(report, "nodes", &[node], message, "remove it, or list it in an element");
+        source.report("nodes", &[node], message, "remove it, or list it in an element");
     }
 }
 
-impl Lists {
+impl Lists<'_> {
     /// Reports an element that has no extent, or is inside out or clockwise.
-    fn check_extent(
-        &self,
-        at: usize,
-        element: &[u32],
-        solids: Solids,
-        disorder: &mut Disorder,
-        report: &mut Collector<'_>,
-    ) {
+    fn check_extent(&self, at: usize, element: &[u32], solids: Solids, disorder: &mut Disorder) {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
         let size = (high - low).max_element();
         let name = || self.source.name("elements", &[at]);
-        let mut mistake = |message, help| self.source.report(report, "elements", &[at], message, help);
+        let mistake = |message, help| self.source.report("elements", &[at], message, help);
         if size == 0.0 {
             let point = point(low, self.dimension);
             return mistake(format!("`{}` has no extent: all its nodes are at {point}", name()), None);
@@ -128,14 +120,7 @@ fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
 }
 
 /// Reports missing and repeated nodes. Returns true if there are none.
-fn check_indices(
-    source: &ListSource,
-    key: &str,
-    at: usize,
-    list: &[u32],
-    nodes: usize,
-    report: &mut Collector<'_>,
-) -> bool {
+fn check_indices(source: &ListSource<'_>, key: &str, at: usize, list: &[u32], nodes: usize) -> bool {
     /// Up to this length, comparing all pairs is faster than sorting.
     const FEW: usize = 16;
     let is_new = |entry: usize| (list[entry] as usize) < nodes && !list[..entry].contains(&list[entry]);
@@ -148,7 +133,7 @@ fn check_indices(
     order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
         let message = format!("node {} occurs twice in `{}`", list[pair[1]], source.name(key, &[at]));
-        source.report(report, key, &[at, pair[1]], message, None);
+        source.report(key, &[at, pair[1]], message, None);
         are_valid = false;
     }
     for (entry, &node) in list.iter().enumerate().filter(|&(_, &node)| node as usize >= nodes) {
@@ -156,7 +141,7 @@ fn check_indices(
             1 => format!("there is no node {node}; the body has only node 0"),
             _ => format!("there is no node {node}; the body has nodes 0 to {}", nodes - 1),
         };
-        source.report(report, key, &[at, entry], message, "nodes are counted from 0");
+        source.report(key, &[at, entry], message, "nodes are counted from 0");
         are_valid = false;
     }
     are_valid
@@ -164,12 +149,11 @@ fn check_indices(
 
 /// Reports a list with the same nodes as an earlier one, in any order. Returns true if there is one.
 fn repeated<'l>(
-    source: &ListSource,
+    source: &ListSource<'_>,
     key: &str,
     at: usize,
     list: impl Fn(usize) -> &'l [u32],
     known: &mut Alike,
-    report: &mut Collector<'_>,
 ) -> bool {
     let first = known.find(list(at), &list).unwrap_or(at);
     if first == at {
@@ -177,7 +161,7 @@ fn repeated<'l>(
     } else {
         let [this, other] = [at, first].map(|at| source.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
-        source.report(report, key, &[at], message, "remove one of them");
+        source.report(key, &[at], message, "remove one of them");
     }
     first != at
 }
@@ -196,7 +180,7 @@ pub(in crate::scene) fn mean_edge(body: &Body) -> f64 {
 }
 
 /// A point as typed.
-fn point(point: DVec3, dimension: Dimension) -> String {
+pub(super) fn point(point: DVec3, dimension: Dimension) -> String {
     match dimension {
         Dimension::Plane => format!("[{}, {}]", point.x, point.y),
         Dimension::Space => format!("[{}, {}, {}]", point.x, point.y, point.z),

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Faces of a body.
+#[derive(Debug)]
 pub(super) enum Faces {
     /// Of its elements, by their nodes.
     Own(Vec<Vec<u32>>),

@@ -1,19 +1,16 @@
 //! Kinematic constraints: nodes held and dragged.
 
 use super::nodes::select;
-use super::{KeyPath, motion};
-use crate::reading::collector::{Collector, key_path, written};
+use super::{Typed, motion};
+use crate::reading::collector::Here;
 use crate::scene::SceneBody;
-use crate::scene::file::{GrabFile, HoldFile};
 use crate::sim::{Assembly, Grip, Motion};
 use std::collections::BTreeMap;
 
 /// A constraint: its place in the scene, nodes of its bodies, when they are held, and how they move.
 #[derive(Debug)]
-pub(super) struct SceneGrip {
-    path: KeyPath,
-    /// The holder of the nodes, such as "held by `hold[0]`".
-    holder: String,
+pub(super) struct SceneGrip<'s> {
+    here: Here<'s>,
     /// The nodes of each body of the scene, in rising order.
     nodes: Vec<Vec<u32>>,
     /// Start (s).
@@ -23,7 +20,7 @@ pub(super) struct SceneGrip {
     motion: Motion,
 }
 
-impl SceneGrip {
+impl SceneGrip<'_> {
     /// The constraints in a run of some of the bodies: one for each body that has nodes in it. So bodies do not depend on each
     /// other: gripped nodes turn about their own centre, and a body moves as it does alone, to the last bit.
     pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = (Grip, String)> {
@@ -31,82 +28,63 @@ impl SceneGrip {
             let first = bodies.nodes(at).start as u32;
             let nodes: Vec<u32> = self.nodes[body].iter().map(|node| first + node).collect();
             let Self { from, until, ref motion, .. } = *self;
-            (!nodes.is_empty()).then(|| (Grip { nodes, from, until, motion: motion.clone() }, written(&self.path)))
+            (!nodes.is_empty()).then(|| (Grip { nodes, from, until, motion: motion.clone() }, self.here.to_string()))
         })
     }
 }
 
 /// The constraints, `hold` first, or `None` after reporting every mistake in them.
-pub(super) fn resolve(
-    holds: &[Option<HoldFile>],
-    grabs: &[Option<GrabFile>],
-    bodies: &[SceneBody],
-    report: &mut Collector<'_>,
-) -> Option<Vec<SceneGrip>> {
-    let mut all: Vec<SceneGrip> = Vec::new();
+pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec<SceneGrip<'s>>> {
+    let (mut all, holds, grabs) = (Vec::new(), &scene.file.hold, &scene.file.grab);
     let dimension = bodies.first()?.body.dimension();
-    for (at, typed) in holds.iter().enumerate() {
-        let Some(typed) = typed else { continue };
-        let path = key_path!["hold", at].to_vec();
+    for (here, typed) in scene.each("hold", holds) {
         let until = typed.until.unwrap_or(f64::INFINITY);
-        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&path, "nodes"), report);
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&here, "nodes"));
         if until <= typed.from {
-            let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
-            report.at(&key_path![path; "until"], message, None);
+            let message = format!("`{here}` ends at {until} s, not later than it begins at {} s", typed.from);
+            here.to("until").wrong(message, None);
         } else if let Some(nodes) = nodes {
-            let holder = format!("held by `hold[{at}]`");
-            all.push(SceneGrip { path, holder, nodes, from: typed.from, until, motion: Motion::Still });
+            all.push(SceneGrip { here, nodes, from: typed.from, until, motion: Motion::Still });
         }
     }
-    for (at, typed) in grabs.iter().enumerate() {
-        let Some(typed) = typed else { continue };
-        let grab = key_path!["grab", at].to_vec();
-        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&grab, "nodes"), report);
-        let path = key_path![grab; "path"];
+    for (here, typed) in scene.each("grab", grabs) {
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&here, "nodes"));
+        let path = here.to("path");
         if typed.path.repeat {
-            let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
-            report.at_key(&key_path![path; "repeat"], message, "remove `repeat`".to_owned());
+            let message = format!("`{path}` repeats, so the nodes would never be released");
+            path.to("repeat").wrong_key(message, "remove `repeat`");
             continue;
         }
-        let motion = motion::keys(&typed.path, dimension, &path, report);
+        let motion = motion::keys(&typed.path, dimension, &path);
         let [from, until] =
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
         if typed.path.keys.len() == 1 {
-            let message =
-                format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
-            report.at(&path, message, "add a key, or write [[hold]] for nodes that stay where they are");
+            let message = format!("`{path}` has a single key: nodes grabbed at {from} s would be released at once");
+            path.wrong(message, "add a key, or write [[hold]] for nodes that stay where they are");
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
-            let holder = format!("grabbed by `grab[{at}]`");
-            all.push(SceneGrip { path: grab, holder, nodes, from, until, motion });
+            all.push(SceneGrip { here, nodes, from, until, motion });
         }
     }
-    check_overlaps(&all, bodies, report);
+    check_overlaps(&all, bodies);
     (all.len() == holds.len() + grabs.len()).then_some(all)
 }
 
 /// Reports constraints that are shorter than a time step (s), which would have no effect.
-pub(super) fn check_steps(
-    holds: &[Option<HoldFile>],
-    grabs: &[Option<GrabFile>],
-    step: f64,
-    report: &mut Collector<'_>,
-) {
-    for (at, hold) in holds.iter().enumerate() {
-        let until = hold.as_ref().and_then(|hold| Some((hold.until?, hold.from)));
-        if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
-            let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
-            let help = "make it longer, or it holds nothing".to_owned();
-            report.at(&key_path!["hold", at, "until"], message, help);
+pub(super) fn check_steps(scene: &Typed<'_>, step: f64) {
+    for (here, hold) in scene.each("hold", &scene.file.hold) {
+        let lasts = hold.until.map(|until| until - hold.from);
+        if let Some(lasts) = lasts.filter(|lasts| (0.0..step).contains(lasts)) {
+            let message = format!("`{here}` lasts {lasts:.3e} s, but a time step takes {step:.3e} s");
+            here.to("until").wrong(message, "make it longer, or it holds nothing");
         }
     }
-    for (at, grab) in grabs.iter().enumerate() {
-        let path = key_path!["grab", at, "path"];
-        grab.iter().for_each(|grab| motion::check_steps(&grab.path, step, &path, report));
-    }
+    scene
+        .each("grab", &scene.file.grab)
+        .for_each(|(here, grab)| motion::check_steps(&grab.path, step, &here.to("path")));
 }
 
 /// Reports nodes in two constraints at the same time.
-fn check_overlaps(all: &[SceneGrip], bodies: &[SceneBody], report: &mut Collector<'_>) {
+fn check_overlaps(all: &[SceneGrip<'_>], bodies: &[SceneBody]) {
     let mut holders: BTreeMap<(usize, u32), Vec<usize>> = BTreeMap::new();
     for (at, grip) in all.iter().enumerate() {
         let nodes = grip.nodes.iter().enumerate().flat_map(|(body, nodes)| nodes.iter().map(move |&node| (body, node)));
@@ -134,9 +112,11 @@ fn check_overlaps(all: &[SceneGrip], bodies: &[SceneBody], report: &mut Collecto
         let until = if until.is_finite() { format!("until {until} s") } else { "on".into() };
         // Only one of several bodies needs a name.
         let of = if bodies.len() == 1 { String::new() } else { format!(" of {}", bodies[body].in_words()) };
-        let held = format!("{} and {} at once", one.holder, two.holder);
-        let message = format!("node {node}{of} is {held}, from {from} s {until}");
-        let help = "assign each node to one of them at a time".to_owned();
-        report.at(&key_path![two.path; "nodes"], message, help);
+        let [first, second] = [one, two].map(|grip| match grip.motion {
+            Motion::Still => format!("held by `{}`", grip.here),
+            _ => format!("grabbed by `{}`", grip.here),
+        });
+        let message = format!("node {node}{of} is {first} and {second} at once, from {from} s {until}");
+        two.here.to("nodes").wrong(message, "assign each node to one of them at a time");
     }
 }

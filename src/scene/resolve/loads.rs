@@ -2,91 +2,64 @@
 
 use super::faces::{Faces, outside, surface};
 use super::nodes::select;
-use super::vector;
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use super::{Typed, vector};
+use crate::reading::collector::Here;
 use crate::reading::words::{list, several};
 use crate::scene::SceneBody;
-use crate::scene::file::{AxialFile, LoadFile, NodesFile};
-use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading, Turning, Weights};
+use crate::scene::file::{AxialFile, Coordinates, LoadFile, NodesFile};
+use crate::sim::{Assembly, Body, Course, Dimension, Ease, Loading, Turning};
 use glam::DVec3;
 
-/// A load: on each body of the scene, if it has one.
+/// A load: what it does, when, and on which parts of each body of the scene.
 #[derive(Debug)]
 pub(super) struct SceneLoad {
-    of_bodies: Vec<Option<OnBody>>,
+    kind: Kind,
     course: Course,
+    on: Vec<Option<Borne>>,
 }
 
-/// A load on a body, whose nodes are counted from its first.
+/// What bears a load on a body: nodes, counted from its first, with their weights, and the faces on which it acts, if it acts on some.
 #[derive(Debug)]
-enum OnBody {
-    Dead(Vec<(u32, DVec3)>),
-    Torque(Vec<(u32, f64)>, DVec3),
-    Pressure(Vec<Vec<u32>>, f64),
-    CarriedPressure(Vec<[u32; 3]>, Weights, f64),
-    Centrifugal(Vec<u32>, Turning),
+struct Borne {
+    weights: Vec<(u32, f64)>,
+    faces: Option<Faces>,
 }
 
 impl SceneLoad {
     /// The loads in a run of some of the bodies.
     pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = Loading> {
         of.iter().enumerate().filter_map(|(at, &body)| {
-            let (first, course) = (bodies.nodes(at).start as u32, self.course.clone());
-            Some(match self.of_bodies[body].as_ref()? {
-                OnBody::Dead(forces) => {
-                    let (nodes, forces) = forces.iter().map(|&(node, force)| (first + node, force)).unzip();
-                    Loading::dead(nodes, forces, course)
-                }
-                OnBody::Torque(weights, torque) => {
-                    let (nodes, weights) = weights.iter().map(|&(node, weight)| (first + node, weight)).unzip();
-                    Loading::torque(nodes, weights, *torque, course)
-                }
-                OnBody::Pressure(faces, pressure) => {
-                    let moved = faces.iter().map(|face| face.iter().map(|node| first + node).collect());
-                    Loading::pressure(moved.collect(), *pressure, course)
-                }
-                OnBody::CarriedPressure(triangles, points, pressure) => {
-                    let points = points.some(0..points.len() as u32, first);
-                    Loading::pressure_on_carried(triangles.clone(), points, *pressure, course)
-                }
-                OnBody::Centrifugal(nodes, turning) => {
-                    let nodes = nodes.iter().map(|node| first + node).collect();
-                    Loading::centrifugal(nodes, turning.clone(), course)
-                }
-            })
+            let borne = self.on[body].as_ref()?;
+            Some(borne.loading(&self.kind, &bodies.bodies()[at], bodies.nodes(at).start as u32, self.course.clone()))
         })
     }
 }
 
 /// The loads, or `None` after reporting every mistake in them.
-pub(super) fn resolve(
-    loads: &[Option<LoadFile>],
-    bodies: &[SceneBody],
-    report: &mut Collector<'_>,
-) -> Option<Vec<SceneLoad>> {
-    let load = |(at, typed): (usize, &Option<LoadFile>)| {
-        let path = key_path!["load", at];
-        let reading = Reading { typed: typed.as_ref()?, path: &path, bodies };
-        let (course, kind) = (reading.course(report), reading.kind(report));
-        let of_bodies = reading.on_bodies(kind?, report)?;
-        Some(SceneLoad { of_bodies, course: course? })
+pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Vec<SceneLoad>> {
+    let load = |(here, typed)| {
+        let reading = Reading { typed, here, bodies };
+        let (course, kind) = (reading.course(), reading.kind());
+        let kind = kind?;
+        Some(SceneLoad { on: reading.borne(&kind)?, kind, course: course? })
     };
-    let all: Vec<_> = loads.iter().enumerate().map(load).collect();
-    all.into_iter().collect()
+    let all: Vec<_> = scene.each("load", &scene.file.load).filter_map(load).collect();
+    (all.len() == scene.file.load.len()).then_some(all)
 }
 
 /// Reports loads that are shorter than a time step (s), which would have no effect.
-pub(super) fn check_steps(loads: &[Option<LoadFile>], step: f64, report: &mut Collector<'_>) {
-    for (at, load) in loads.iter().enumerate() {
-        let Some((from, until)) = load.as_ref().and_then(|load| Some((load.from, load.until?))) else { continue };
-        if (0.0..step).contains(&(until - from)) {
-            let message = format!("`load[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
-            report.at(&key_path!["load", at, "until"], message, "make it longer, or it does nothing".to_owned());
+pub(super) fn check_steps(scene: &Typed<'_>, step: f64) {
+    for (here, load) in scene.each("load", &scene.file.load) {
+        let lasts = load.until.map(|until| until - load.from);
+        if let Some(lasts) = lasts.filter(|lasts| (0.0..step).contains(lasts)) {
+            let message = format!("`{here}` lasts {lasts:.3e} s, but a time step takes {step:.3e} s");
+            here.to("until").wrong(message, "make it longer, or it does nothing");
         }
     }
 }
 
-/// What a load does, and its key.
+/// What a load does.
+#[derive(Debug)]
 enum Kind {
     Force(DVec3),
     Traction(DVec3),
@@ -97,39 +70,35 @@ enum Kind {
     Centrifugal(DVec3, DVec3),
 }
 
-/// The nodes or the faces of a body with their weights.
-type Weighted = Vec<(u32, f64)>;
-
 /// A load that is read.
 struct Reading<'a> {
     typed: &'a LoadFile,
-    path: &'a [PathPart<'a>],
+    here: Here<'a>,
     bodies: &'a [SceneBody],
 }
 
 impl Reading<'_> {
-    fn course(&self, report: &mut Collector<'_>) -> Option<Course> {
+    fn course(&self) -> Option<Course> {
         let LoadFile { from, until, ramp, keys, ease, .. } = self.typed;
-        let (name, until) = (written(self.path), until.unwrap_or(f64::INFINITY));
+        let (here, until) = (&self.here, until.unwrap_or(f64::INFINITY));
         if until <= *from {
-            let message = format!("`{name}` ends at {until} s, not later than it begins at {from} s");
-            report.at(&key_path![self.path; "until"], message, None);
+            let message = format!("`{here}` ends at {until} s, not later than it begins at {from} s");
+            here.to("until").wrong(message, None);
             return None;
         }
         let rise = ramp.as_ref().map(|ramp| vec![[*from, 0.0], [from + ramp.0, 1.0]]);
         let typed = keys.as_ref().map(|keys| keys.iter().map(|key| [key.time, key.share]).collect::<Vec<_>>());
         if rise.is_some() && typed.is_some() {
-            let message = format!("`{name}` has `ramp` and `keys`, which both say how it rises");
-            report.at_key(&key_path![self.path; "ramp"], message, "remove one of them");
+            let message = format!("`{here}` has `ramp` and `keys`, which both say how it rises");
+            here.to("ramp").wrong_key(message, "remove one of them");
             return None;
         }
         let keys = typed.or(rise).unwrap_or_default();
         if let Some(at) = (1..keys.len()).find(|&at| keys[at][0] <= keys[at - 1][0]) {
-            let path = key_path![self.path; "keys", at];
+            let key = here.to("keys").to(at);
             let [before, time] = [keys[at - 1][0], keys[at][0]];
-            let message =
-                format!("`{}` is at {time} s, not later than the key before it at {before} s", written(&path));
-            report.at(&key_path![path; "time"], message, "list the keys in rising order of time");
+            let message = format!("`{key}` is at {time} s, not later than the key before it at {before} s");
+            key.to("time").wrong(message, "list the keys in rising order of time");
             return None;
         }
         let ease = if keys.is_empty() { Ease::Linear } else { *ease };
@@ -137,49 +106,49 @@ impl Reading<'_> {
     }
 
     /// The only kind that is typed.
-    fn kind(&self, report: &mut Collector<'_>) -> Option<Kind> {
+    fn kind(&self) -> Option<Kind> {
         let LoadFile { force, traction, pressure, acceleration, torque, centrifugal, about, .. } = self.typed;
-        let dimension = self.bodies.first()?.body.dimension();
+        let (dimension, here) = (self.bodies.first()?.body.dimension(), &self.here);
         let keys = ["force", "traction", "pressure", "acceleration", "torque", "centrifugal"];
         let vectors = [force.is_some(), traction.is_some(), pressure.is_some(), acceleration.is_some()];
         let given = vectors.into_iter().chain([torque.is_some(), centrifugal.is_some()]);
         let given: Vec<_> = keys.into_iter().zip(given).filter_map(|(key, is_given)| is_given.then_some(key)).collect();
         let [only] = given[..] else {
-            let (name, all) = (written(self.path), list(&keys, "or", |key| format!("`{key}`")));
+            let all = list(&keys, "or", |key| format!("`{key}`"));
             let (message, help) = match given.len() {
-                0 => (format!("`{name}` has no load; expected one of {all}"), "such as force = [0, -10, 0]"),
+                0 => (format!("`{here}` has no load; expected one of {all}"), "such as force = [0, -10, 0]"),
                 _ => {
                     let given = list(&given, "and", |key| format!("`{key}`"));
-                    (format!("`{name}` has {given}; expected one load"), "write another [[load]] for each of them")
+                    (format!("`{here}` has {given}; expected one load"), "write another [[load]] for each of them")
                 }
             };
-            report.at(self.path, message, help.to_owned());
+            here.wrong(message, help);
             return None;
         };
         if about.is_some() && only != "centrifugal" {
-            let message =
-                format!("`{}` has `about`, which is the axis of `centrifugal`, with `{only}`", written(self.path));
-            report.at_key(&key_path![self.path; "about"], message, "remove it");
+            let message = format!("`{here}` has `about`, which is the axis of `centrifugal`, with `{only}`");
+            here.to("about").wrong_key(message, "remove it");
             return None;
         }
-        let path = key_path![self.path; only];
-        let typed = [force, traction, acceleration].into_iter().flatten().next();
-        Some(match (only, torque.as_ref().or(centrifugal.as_ref())) {
-            ("force", _) => Kind::Force(vector(typed?, dimension, &path, report)?),
-            ("traction", _) => Kind::Traction(vector(typed?, dimension, &path, report)?),
-            ("acceleration", _) => Kind::Acceleration(vector(typed?, dimension, &path, report)?),
-            ("centrifugal", Some(rate)) => {
-                let point = key_path![self.path; "about"];
-                let about = about.as_ref().map_or(Some(DVec3::ZERO), |typed| vector(typed, dimension, &point, report));
-                Kind::Centrifugal(axial(rate, (dimension, only), &path, report)?, about?)
+        let at = here.to(only);
+        let straight = |typed: &Option<Coordinates>| vector(typed.as_ref()?, dimension, &at);
+        let around = |typed: &Option<AxialFile>| axial(typed.as_ref()?, (dimension, only), &at);
+        Some(match only {
+            "force" => Kind::Force(straight(force)?),
+            "traction" => Kind::Traction(straight(traction)?),
+            "acceleration" => Kind::Acceleration(straight(acceleration)?),
+            "torque" => Kind::Torque(around(torque)?),
+            "centrifugal" => {
+                let point = |typed| vector(typed, dimension, &here.to("about"));
+                let about = about.as_ref().map_or(Some(DVec3::ZERO), point);
+                Kind::Centrifugal(around(centrifugal)?, about?)
             }
-            (_, Some(torque)) => Kind::Torque(axial(torque, (dimension, only), &path, report)?),
             _ => Kind::Pressure((*pressure)?),
         })
     }
 
-    /// The load on each body that has one; `None` after a mistake.
-    fn on_bodies(&self, kind: Kind, report: &mut Collector<'_>) -> Option<Vec<Option<OnBody>>> {
+    /// What bears the load on each body that has one; `None` after a mistake.
+    fn borne(&self, kind: &Kind) -> Option<Vec<Option<Borne>>> {
         let LoadFile { nodes, faces, body, .. } = self.typed;
         let needs_faces = match kind {
             Kind::Traction(_) => Some("traction"),
@@ -187,8 +156,8 @@ impl Reading<'_> {
             _ => None,
         };
         if let (Some(key), Some(_)) = (needs_faces, nodes) {
-            let message = format!("`{}` has a `{key}`, which acts on faces, with `nodes`", written(self.path));
-            report.at_key(&key_path![self.path; "nodes"], message, "write `faces` in place of `nodes`");
+            let message = format!("`{}` has a `{key}`, which acts on faces, with `nodes`", self.here);
+            self.here.to("nodes").wrong_key(message, "write `faces` in place of `nodes`");
             return None;
         }
         let all = NodesFile::Named("all".to_owned());
@@ -199,84 +168,67 @@ impl Reading<'_> {
         let have_skins = on_faces && self.bodies.iter().any(|body| body.body.carried().is_some());
         let skins: Vec<_> = self.bodies.iter().filter(|_| have_skins).map(outside).collect();
         let bodies = if have_skins { &skins } else { self.bodies };
-        let selected = select(body.as_deref(), (!is_all).then_some(chosen), bodies, (self.path, key), report)?;
-        let mut of_bodies = Vec::new();
+        let selected = select(body.as_deref(), (!is_all).then_some(chosen), bodies, (&self.here, key))?;
+        let mut all = Vec::new();
         for (body, points) in self.bodies.iter().zip(selected) {
             let faces = on_faces.then(|| Faces::among(&body.body, &points));
-            of_bodies.push(match faces {
+            all.push(match faces {
                 _ if points.is_empty() => None,
                 Some(faces) if faces.is_empty() => {
-                    self.report_no_faces(body, points.len(), report);
+                    self.report_no_faces(body, points.len());
                     return None;
                 }
-                Some(faces) => Some(on_body(&kind, &body.body, faces.areas(&body.body), Some(faces))),
-                None => Some(on_body(&kind, &body.body, shared(&body.body, &points), None)),
+                Some(faces) => Some(Borne { weights: faces.areas(&body.body), faces: Some(faces) }),
+                None => Some(Borne { weights: shared(&body.body, &points), faces: None }),
             });
-            if let Some(Some(OnBody::Torque(weights, torque))) = of_bodies.last() {
-                self.check_arms(body, weights, *torque, report)?;
+            if let (Kind::Torque(torque), Some(Some(borne))) = (kind, all.last()) {
+                self.check_arms(body, borne, *torque)?;
             }
         }
-        Some(of_bodies)
+        Some(all)
     }
 
-    fn report_no_faces(&self, body: &SceneBody, nodes: usize, report: &mut Collector<'_>) {
-        let (path, body_words) = (key_path![self.path; "faces"], body.in_words());
-        let has_faces = body.body.carried().is_some() || !surface(&body.body).is_empty();
-        let (message, help) = if has_faces {
+    fn report_no_faces(&self, body: &SceneBody, nodes: usize) {
+        let (faces, of) = (self.here.to("faces"), body.in_words());
+        if body.body.carried().is_some() || !surface(&body.body).is_empty() {
             let what = if body.body.carried().is_some() { "point" } else { "node" };
             let nodes = several(nodes as u64, what);
-            let message =
-                format!("`{}` takes {nodes} of {body_words}, but no face has all corners among them", written(&path));
-            (message, "choose a larger part of the surface, or write `nodes` for a force on nodes")
+            let message = format!("`{faces}` takes {nodes} of {of}, but no face has all corners among them");
+            faces.wrong(message, "choose a larger part of the surface, or write `nodes` for a force on nodes");
         } else {
-            let message =
-                format!("`{}` acts on faces, but {body_words} has none: it is made of bars", written(self.path));
-            (message, "write a `force` on `nodes`")
-        };
-        report.at(if has_faces { &path } else { self.path }, message, help.to_owned());
+            let message = format!("`{}` acts on faces, but {of} has none: it is made of bars", self.here);
+            self.here.wrong(message, "write a `force` on `nodes`");
+        }
     }
 
     /// Reports a torque about a line on which all nodes lie at rest.
-    fn check_arms(
-        &self,
-        body: &SceneBody,
-        weights: &Weighted,
-        torque: DVec3,
-        report: &mut Collector<'_>,
-    ) -> Option<()> {
+    fn check_arms(&self, body: &SceneBody, borne: &Borne, torque: DVec3) -> Option<()> {
         let rest = body.body.rest();
+        let weights = borne.shares();
         let centre: DVec3 = weights.iter().map(|&(node, weight)| rest[node as usize] * weight).sum();
         let farthest = weights.iter().map(|&(node, _)| (rest[node as usize] - centre).cross(torque).length());
         let most = farthest.fold(0.0, f64::max);
         if most > 1e-9 * body.body.extent() * torque.length() || torque == DVec3::ZERO {
             return Some(());
         }
-        let message = format!(
-            "`{}` has no arm: all its nodes of {} lie on its axis",
-            written(&key_path![self.path; "torque"]),
-            body.in_words()
-        );
-        report.at(&key_path![self.path; "torque"], message, "choose nodes beside the axis");
+        let here = self.here.to("torque");
+        let message = format!("`{here}` has no arm: all its nodes of {} lie on its axis", body.in_words());
+        here.wrong(message, "choose nodes beside the axis");
         None
     }
 }
 
 /// A vector along an axis, at a key.
-fn axial(
-    typed: &AxialFile,
-    (dimension, key): (Dimension, &str),
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<DVec3> {
+fn axial(typed: &AxialFile, (dimension, key): (Dimension, &str), here: &Here<'_>) -> Option<DVec3> {
     match (typed, dimension) {
-        (AxialFile::Vector(typed), Dimension::Space) => vector(typed, dimension, path, report),
+        (AxialFile::Vector(typed), Dimension::Space) => vector(typed, dimension, here),
         (AxialFile::Number(size), Dimension::Plane) => Some(DVec3::Z * *size),
         (_, dimension) => {
             let (body, example) = match dimension {
                 Dimension::Space => ("a number, but the body is in space", "[0, 0, 5]"),
                 Dimension::Plane => ("a vector, but the body is in the plane", "5"),
             };
-            report.at(path, format!("`{}` is {body}", written(path)), format!("such as {key} = {example}"));
+            here.wrong(format!("`{here}` is {body}"), format!("such as {key} = {example}"));
             None
         }
     }
@@ -284,40 +236,59 @@ fn axial(
 
 /// Nodes of a body with their shares of a load: equal ones, or in a filled surface their masses, as elements that are hardly filled
 /// would not bear equal ones.
-fn shared(body: &Body, nodes: &[u32]) -> Weighted {
+fn shared(body: &Body, nodes: &[u32]) -> Vec<(u32, f64)> {
     let share = |node: u32| if body.carried().is_some() { body.mass()[node as usize] } else { 1.0 };
     nodes.iter().map(|&node| (node, share(node))).collect()
 }
 
-/// A load on nodes of a body with their shares, which bear faces if it acts on some.
-fn on_body(kind: &Kind, body: &Body, weights: Weighted, faces: Option<Faces>) -> OnBody {
-    let whole: f64 = weights.iter().map(|(_, weight)| weight).sum();
-    let dead = |of: &dyn Fn(u32, f64) -> DVec3| {
-        OnBody::Dead(weights.iter().map(|&(node, weight)| (node, of(node, weight))).collect())
-    };
-    match *kind {
-        Kind::Force(force) => dead(&|_, weight| force * (weight / whole)),
-        Kind::Traction(traction) => dead(&|_, area| traction * area),
-        Kind::Acceleration(acceleration) => dead(&|node, _| acceleration * body.mass()[node as usize]),
-        Kind::Torque(torque) => {
-            OnBody::Torque(weights.iter().map(|&(node, weight)| (node, weight / whole)).collect(), torque)
-        }
-        Kind::Pressure(pressure) => match (faces, body.carried()) {
-            (Some(Faces::Carried(triangles)), Some(fine)) => {
-                let mut points: Vec<u32> = triangles.iter().flatten().copied().collect();
-                points.sort_unstable();
-                points.dedup();
-                let place = |point: u32| points.partition_point(|&other| other < point) as u32;
-                let triangles = triangles.iter().map(|face| face.map(place)).collect();
-                OnBody::CarriedPressure(triangles, fine.weights.some(points.iter().copied(), 0), pressure)
+impl Borne {
+    /// The nodes with their shares of the whole.
+    fn shares(&self) -> Vec<(u32, f64)> {
+        let whole: f64 = self.weights.iter().map(|(_, weight)| weight).sum();
+        self.weights.iter().map(|&(node, weight)| (node, weight / whole)).collect()
+    }
+
+    /// A load on a body, whose first node has a number in its run.
+    fn loading(&self, kind: &Kind, body: &Body, first: u32, course: Course) -> Loading {
+        let nodes = self.weights.iter().map(|&(node, _)| first + node).collect();
+        let mass = |&(node, _): &(u32, f64)| body.mass()[node as usize];
+        match *kind {
+            Kind::Force(force) => {
+                let forces = self.shares().iter().map(|(_, share)| force * *share).collect();
+                Loading::dead(nodes, forces, course)
             }
-            (Some(Faces::Own(faces)), _) => OnBody::Pressure(faces, pressure),
-            _ => unreachable!("a pressure acts on faces"),
-        },
-        Kind::Centrifugal(rate, about) => {
-            let nodes: Vec<u32> = weights.iter().map(|&(node, _)| node).collect();
-            let masses = nodes.iter().map(|&node| body.mass()[node as usize]).collect();
-            OnBody::Centrifugal(nodes, Turning { rate, about, masses })
+            Kind::Traction(traction) => {
+                let forces = self.weights.iter().map(|(_, area)| traction * *area).collect();
+                Loading::dead(nodes, forces, course)
+            }
+            Kind::Acceleration(acceleration) => {
+                let forces = self.weights.iter().map(|one| acceleration * mass(one)).collect();
+                Loading::dead(nodes, forces, course)
+            }
+            Kind::Torque(torque) => {
+                let shares = self.shares().into_iter().map(|(_, share)| share).collect();
+                Loading::torque(nodes, shares, torque, course)
+            }
+            Kind::Pressure(pressure) => match (&self.faces, body.carried()) {
+                (Some(Faces::Carried(triangles)), Some(fine)) => {
+                    let mut points: Vec<u32> = triangles.iter().flatten().copied().collect();
+                    points.sort_unstable();
+                    points.dedup();
+                    let place = |point: u32| points.partition_point(|&other| other < point) as u32;
+                    let triangles = triangles.iter().map(|face| face.map(place)).collect();
+                    let points = fine.weights.some(points.iter().copied(), first);
+                    Loading::pressure_on_carried(triangles, points, pressure, course)
+                }
+                (Some(Faces::Own(faces)), _) => {
+                    let moved = faces.iter().map(|face| face.iter().map(|node| first + node).collect());
+                    Loading::pressure(moved.collect(), pressure, course)
+                }
+                _ => unreachable!("a pressure acts on faces"),
+            },
+            Kind::Centrifugal(rate, about) => {
+                let masses = self.weights.iter().map(mass).collect();
+                Loading::centrifugal(nodes, Turning { rate, about, masses }, course)
+            }
         }
     }
 }

@@ -1,19 +1,13 @@
 //! The masses of a body's nodes.
 
 use super::table::BodyTable;
-use crate::reading::collector::{Collector, written};
 use crate::scene::file::LARGEST;
 use crate::sim::geometry::node_volumes;
 use crate::sim::{Body, Dimension};
 
 /// The mass of each node of a body without masses of its nodes (kg), or `None` after reporting a mistake. Nodes may have parts of the
 /// body's volume of their own.
-pub(super) fn resolve(
-    table: &BodyTable<'_>,
-    body: &Body,
-    volumes: Option<Vec<f64>>,
-    report: &mut Collector<'_>,
-) -> Option<Vec<f64>> {
+pub(super) fn resolve(table: &BodyTable<'_>, body: &Body, volumes: Option<Vec<f64>>) -> Option<Vec<f64>> {
     let nodes = body.len();
     let volumes = || volumes.unwrap_or_else(|| node_volumes(body));
     let (key, masses) = match (table.file.density, table.file.mass_total) {
@@ -28,9 +22,9 @@ pub(super) fn resolve(
                     true => format!("no element of the body has {measure}"),
                     false => format!("node {node} belongs to no element with {measure}"),
                 };
-                let path = table.at("density");
-                let message = format!("`{}` is a mass per {per}, but {found}", written(&path));
-                report.at_key(&path, message, "give `mass_total`, or the `mass` of every node");
+                let here = table.here.to("density");
+                let message = format!("`{here}` is a mass per {per}, but {found}");
+                here.wrong_key(message, "give `mass_total`, or the `mass` of every node");
                 return None;
             }
             ("density", volumes.into_iter().map(|volume| density * volume).collect())
@@ -47,9 +41,9 @@ pub(super) fn resolve(
     };
     // Masses of nodes that are typed have the same limits.
     if let Some(node) = masses.iter().position(|&mass| !(mass > 0.0 && mass <= LARGEST)) {
-        let path = table.at(key);
-        let message = format!("`{}` gives node {node} a mass of {:e} kg", written(&path), masses[node]);
-        report.at(&path, message, format!("expected more than 0, up to {LARGEST:e} kg"));
+        let here = table.here.to(key);
+        let message = format!("`{here}` gives node {node} a mass of {:e} kg", masses[node]);
+        here.wrong(message, format!("expected more than 0, up to {LARGEST:e} kg"));
         return None;
     }
     Some(masses)

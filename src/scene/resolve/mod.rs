@@ -34,7 +34,7 @@ use super::typed::typed;
 use super::view::Subject;
 use super::{ALL_BODIES, Probe, Run, Scene, SceneBody};
 use crate::look::{self, FontFiles, View, font};
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::collector::{Collector, Here, key_path};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted};
 use crate::sim::{Contacts, Dimension, Obstacle};
@@ -45,9 +45,6 @@ use recordings::ReadRecording;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::slice;
-
-/// A path of keys and indices in a scene.
-pub(super) type KeyPath = Vec<PathPart<'static>>;
 
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
@@ -65,6 +62,7 @@ pub(super) struct Typed<'a> {
     /// The folder of the files that it names.
     pub(super) folder: &'a Path,
     pub(super) limits: &'a Limits,
+    pub(super) report: &'a Collector<'a>,
 }
 
 /// The physics. A part is `None` if it has a mistake, or depends on a part with one.
@@ -83,23 +81,34 @@ struct Physics {
 
 impl<'a> Typed<'a> {
     /// The place of a body in the scene: `body`, or `body[1]` among several.
-    fn place(&self, body: usize) -> KeyPath {
-        if self.is_list { key_path!["body", body].to_vec() } else { key_path!["body"].to_vec() }
+    fn place(&self, body: usize) -> Here<'a> {
+        let all = self.report.here(&key_path!["body"]);
+        if self.is_list { all.to(body) } else { all }
+    }
+
+    /// The entries of a list that have no mistakes, each with its place.
+    fn each<'e, T>(
+        &self,
+        key: &'static str,
+        list: &'e [Option<T>],
+    ) -> impl Iterator<Item = (Here<'a>, &'e T)> + use<'a, 'e, T> {
+        let here = self.report.here(&key_path![key]);
+        list.iter().enumerate().filter_map(move |(at, one)| Some((here.to(at), one.as_ref()?)))
     }
 
     /// The scene with this name, or `None` after any mistake: first the physics, then the view.
-    pub(super) fn resolve(&self, name: &str, report: &mut Collector<'_>) -> Option<Scene> {
-        let file = self.file;
-        let mut physics = self.physics(report);
-        rest::start(self, &mut physics, report);
-        let font = self.font(report);
-        let view = self.view(&physics, font.clone().unwrap_or_default(), report);
+    pub(super) fn resolve(&self, name: &str) -> Option<Scene> {
+        let Self { file, report, .. } = *self;
+        let mut physics = self.physics();
+        rest::start(self, &mut physics);
+        let font = self.font();
+        let view = self.view(&physics, font.clone().unwrap_or_default());
         if let (0, Some(runs)) = (report.total(), &physics.runs) {
             let fixed = runs.iter().filter(|run| run.tolerance.is_none() && run.recording.is_none());
             let longest = fixed.fold(0.0, |longest: f64, run| longest.max(run.step));
-            obstacles::check_steps(&file.obstacle, longest, report);
-            grips::check_steps(&file.hold, &file.grab, longest, report);
-            loads::check_steps(&file.load, longest, report);
+            obstacles::check_steps(self, longest);
+            grips::check_steps(self, longest);
+            loads::check_steps(self, longest);
             file.time.iter().for_each(|time| check_rows(time, runs, report));
         }
         if report.total() > 0 {
@@ -132,61 +141,60 @@ impl<'a> Typed<'a> {
         scene.place_runs();
         Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
         if let Some(contacts) = &scene.contacts {
-            contact::check_starts(&scene, contacts, self, report);
+            contact::check_starts(&scene, contacts, self);
             contact::check_pairs(&scene, contacts, report);
-            contact::check_idle_thickness(&scene, contacts, self, report);
+            contact::check_idle_thickness(&scene, contacts, self);
         }
-        doubts::warn(&scene, self, report);
-        until::end(self, &mut scene, report);
+        doubts::warn(&scene, self);
+        until::end(self, &mut scene);
         Some(Scene { warnings: report.warnings(), ..scene })
     }
 
-    fn physics(&self, report: &mut Collector<'_>) -> Physics {
-        let Self { file, flawed, limits, .. } = *self;
-        let names = self.body_names(report);
+    fn physics(&self) -> Physics {
+        let Self { file, flawed, limits, report, .. } = *self;
+        let names = self.body_names();
         let choices = choice::resolve(&file.run, file.body.len(), names.as_deref(), report);
         // All filled surfaces together have at most so many elements.
         let mut most = limits.nodes;
         let read = |at| {
-            let body = TypedBody::read(self, at, most, report)?;
+            let body = TypedBody::read(self, at, most)?;
             most = most.saturating_sub(body.filled());
             Some(body)
         };
         let typed: Vec<_> = (0..file.body.len()).map(read).collect();
-        let recordings: Vec<_> = (0..file.run.len()).map(|at| ReadRecording::read(self, at, report)).collect();
+        let recordings: Vec<_> = (0..file.run.len()).map(|at| ReadRecording::read(self, at)).collect();
         let files = FileDigests {
             bodies: typed.iter().map(|body| body.as_ref()?.digest.clone()).collect(),
             runs: recordings.iter().map(|read| read.as_ref().map(ReadRecording::digest)).collect(),
             ..FileDigests::default()
         };
-        let dimension = self.dimension(&typed, report);
-        let bodies = bodies(typed, &choices, limits, report);
+        let dimension = self.dimension(&typed);
+        let bodies = bodies(typed, &choices, limits);
         let gravity = match (&file.gravity, dimension) {
-            (Some(typed), Some(dimension)) => vector(typed, dimension, &key_path!["gravity"], report),
+            (Some(typed), Some(dimension)) => vector(typed, dimension, &report.here(&key_path!["gravity"])),
             _ => Some(DVec3::ZERO),
         };
         // Where bodies start is not known without all of their keys.
         let sound: Vec<_> = bodies.iter().flatten().filter(|_| !flawed.contains("body")).collect();
-        contact::check_obstacle_names(self, report);
-        let obstacles = obstacles::resolve(file, dimension, &sound, report);
+        contact::check_obstacle_names(self);
+        let obstacles = obstacles::resolve(self, dimension, &sound);
         let bodies: Option<Vec<_>> = bodies.into_iter().collect();
         let is_alike = |body: &SceneBody| Some(body.body.dimension()) == dimension;
         let mut bodies = bodies.filter(|bodies| !bodies.is_empty() && bodies.iter().all(is_alike));
-        let contacts = bodies.as_ref().and_then(|bodies| contact::resolve(self, bodies, report));
+        let contacts = bodies.as_ref().and_then(|bodies| contact::resolve(self, bodies));
         if let (Some(bodies), Some(obstacles), Some(contacts)) = (&mut bodies, &obstacles, &contacts) {
             contact::separate(self, bodies, obstacles, contacts, &choices);
         }
-        let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&file.hold, &file.grab, bodies, report));
-        let loads = bodies.as_ref().and_then(|bodies| loads::resolve(&file.load, bodies, report));
-        let probes = bodies.as_ref().and_then(|bodies| probes::resolve(self, bodies, report));
+        let grips = bodies.as_ref().and_then(|bodies| grips::resolve(self, bodies));
+        let loads = bodies.as_ref().and_then(|bodies| loads::resolve(self, bodies));
+        let probes = bodies.as_ref().and_then(|bodies| probes::resolve(self, bodies));
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);
         }
-        runs::check_names(&file.run, report);
+        choice::check_names(["run", "runs"], self.each("run", &file.run).map(|(here, run)| (here, Some(&*run.name))));
         let runs = bodies.as_ref().and_then(|bodies| {
             let (grips, loads) = (grips.as_deref().unwrap_or_default(), loads.as_deref().unwrap_or_default());
-            let resolved = runs::Resolved { choices: &choices, bodies, grips, loads };
-            runs::resolve(self, recordings, resolved, report)
+            runs::Resolved { scene: self, choices: &choices, bodies, grips, loads }.runs(recordings)
         });
         let (runs, own) = runs.unzip();
         bodies.iter_mut().zip(own).for_each(|(bodies, own)| bodies.extend(own));
@@ -194,41 +202,42 @@ impl<'a> Typed<'a> {
     }
 
     /// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.
-    fn body_names(&self, report: &mut Collector<'_>) -> Option<Vec<&'a str>> {
-        let (known, name) = (report.total(), |body: &'a BodyFile| body.name.as_deref());
+    fn body_names(&self) -> Option<Vec<&'a str>> {
+        let (known, name) = (self.report.total(), |body: &'a BodyFile| body.name.as_deref());
         let bodies = || (0..).zip(&self.file.body).map(|(at, body)| (self.place(at), body.as_ref()));
-        choice::check_names(["body", "bodies"], bodies().map(|(place, body)| (place, body.and_then(name))), report);
+        choice::check_names(["body", "bodies"], bodies().map(|(place, body)| (place, body.and_then(name))));
         for (place, body) in bodies() {
             if body.and_then(name) == Some(ALL_BODIES) {
                 let message =
                     format!("a body is called {}, which means all bodies of a run in files", quoted(ALL_BODIES));
-                report.at(&key_path![place; "name"], message, "expected another name");
+                place.to("name").wrong(message, "expected another name");
             }
             if self.file.body.len() > 1 && body.is_some_and(|body| body.name.is_none()) {
-                let message = format!("`{}` has no `name`, which each of several bodies needs", written(&place));
-                report.at(&place, message, "such as name = \"cube\"");
+                let message = format!("`{place}` has no `name`, which each of several bodies needs");
+                place.wrong(message, "such as name = \"cube\"");
             }
         }
-        let are_known = report.total() == known && (self.is_list || !self.flawed.contains("body"));
+        let are_known = self.report.total() == known && (self.is_list || !self.flawed.contains("body"));
         let names = bodies().map(|(_, body)| body.map(|body| name(body).unwrap_or_default()));
         names.collect::<Option<_>>().filter(|_| are_known)
     }
 
     /// Whether the bodies are in the plane or in space. Bodies that differ from the first are reported.
-    fn dimension(&self, typed: &[Option<TypedBody<'_>>], report: &mut Collector<'_>) -> Option<Dimension> {
+    fn dimension(&self, typed: &[Option<TypedBody<'_>>]) -> Option<Dimension> {
         let mut dimensions = typed.iter().enumerate().filter_map(|(at, body)| Some((at, body.as_ref()?.dimension())));
         let (first, dimension) = dimensions.next()?;
         let words = |dimension| if dimension == Dimension::Plane { "in the plane" } else { "in space" };
         for (at, other) in dimensions.filter(|(_, other)| *other != dimension) {
-            let [one, two] = [first, at].map(|at| written(&self.place(at)));
+            let [one, two] = [first, at].map(|at| self.place(at));
             let message = format!("`{two}` is {}, but `{one}` is {}", words(other), words(dimension));
-            report.at(&self.place(at), message, "expected all bodies of a scene in the plane, or all in space");
+            two.wrong(message, "expected all bodies of a scene in the plane, or all in space");
         }
         Some(dimension)
     }
 
     /// The fonts of the view, or `None` after a mistake in them.
-    fn font(&self, report: &mut Collector<'_>) -> Option<FontFiles> {
+    fn font(&self) -> Option<FontFiles> {
+        let report = self.report;
         match self.file.view.get("font") {
             Some(checked) => font::read(self.folder, &typed(checked, &key_path!["view", "font"], report)?, report),
             None => Some(FontFiles::default()),
@@ -236,13 +245,13 @@ impl<'a> Typed<'a> {
     }
 
     /// The view.
-    fn view(&self, physics: &Physics, font: FontFiles, report: &mut Collector<'_>) -> Option<View> {
+    fn view(&self, physics: &Physics, font: FontFiles) -> Option<View> {
         let Physics { gravity, bodies, obstacles, runs, .. } = physics;
         let (runs, gravity) = (runs.as_deref().unwrap_or_default(), gravity.unwrap_or_default());
         let around = Subject { bodies: bodies.as_ref()?, gravity, obstacles: obstacles.as_ref()?, runs };
-        let view = View::read(&self.file.view, &around, font, report)?;
+        let view = View::read(&self.file.view, &around, font, self.report)?;
         let chosen: Vec<_> = self.file.run.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
-        look::check_runs(&chosen, &view.look.palette(), report);
+        look::check_runs(&chosen, &view.look.palette(), self.report);
         Some(view)
     }
 }
@@ -252,7 +261,6 @@ fn bodies<'a>(
     typed: Vec<Option<TypedBody<'_>>>,
     choices: &[Option<Choice<'a>>],
     limits: &Limits,
-    report: &mut Collector<'_>,
 ) -> Vec<Option<SceneBody>> {
     let size = |body: &Option<TypedBody<'_>>| body.as_ref().map_or_else(|| BodySize::new(0, []), TypedBody::size);
     let sizes: Vec<_> = typed.iter().map(size).collect();
@@ -267,23 +275,23 @@ fn bodies<'a>(
             let all = choices.iter().flatten().flat_map(|choice| choice.of.iter().zip(&choice.models));
             all.filter(|(of, _)| **of == at).map(|(_, typed)| typed.model.young()).collect::<Vec<_>>()
         };
-        return typed.into_iter().enumerate().map(|(at, body)| body?.resolve(&young(at), report)).collect();
+        return typed.into_iter().enumerate().map(|(at, body)| body?.resolve(&young(at))).collect();
     };
     match of {
         limits::Largest::Body(body) => {
-            typed[body].iter().for_each(|body| body.too_large(message.clone(), help.clone(), report));
+            typed[body].iter().for_each(|body| body.too_large(message.clone(), help.clone()));
         }
         limits::Largest::Model(run, at) => {
-            let path = choices[run].as_ref().map(|choice| &choice.models[at].path);
-            path.into_iter().for_each(|path| report.at(&key_path![path; "springs"], message.clone(), help.clone()));
+            let choice = choices[run].as_ref();
+            choice.into_iter().for_each(|of| of.models[at].here.to("springs").wrong(message.clone(), help.clone()));
         }
     }
-    typed.iter().flatten().for_each(|body| body.check(report));
+    typed.iter().flatten().for_each(TypedBody::check);
     typed.iter().map(|_| None).collect()
 }
 
 /// Reports more frames or rows than there may be.
-fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {
+fn check_frames(time: &TimeFile, report: &Collector<'_>) {
     let TimeFile { duration, frames_per_second: rate, .. } = time;
     let number = duration * rate;
     if number > MOST_FRAMES {
@@ -294,7 +302,7 @@ fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {
 }
 
 /// Each step has one row at most for all bodies of a run, and one for each of several.
-fn check_rows(time: &TimeFile, runs: &[Run], report: &mut Collector<'_>) {
+fn check_rows(time: &TimeFile, runs: &[Run], report: &Collector<'_>) {
     let (duration, Some(Positive(every))) = (time.duration, time.every) else { return };
     let together = |run: &Run| if run.of.len() > 1 { 1.0 + run.of.len() as f64 } else { 1.0 };
     let number: f64 = runs.iter().map(|run| together(run) * duration / every.max(run.step)).sum();

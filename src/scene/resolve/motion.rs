@@ -1,35 +1,27 @@
 //! Rotations and paths.
 
 use super::{direction, vector};
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::collector::Here;
 use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
 use crate::sim::{Dimension, Key, Motion, Offset};
 use glam::DVec3;
 
 /// The unit axis of a rotation. Reports a missing axis in space, and an axis in the plane.
-pub(super) fn axis(
-    typed: Option<&Coordinates>,
-    dimension: Dimension,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<DVec3> {
-    let rotation = written(path);
-    let path = key_path![path; "axis"];
+pub(super) fn axis(typed: Option<&Coordinates>, dimension: Dimension, rotation: &Here<'_>) -> Option<DVec3> {
+    let here = rotation.to("axis");
     match (typed, dimension) {
         (None, Dimension::Plane) => Some(DVec3::Z),
         (Some(_), Dimension::Plane) => {
             let message = format!("`{rotation}` has an `axis`, but the body is in the plane");
-            report.at_key(&path, message, "remove `axis`; a positive angle rotates counter-clockwise");
+            here.wrong_key(message, "remove `axis`; a positive angle rotates counter-clockwise");
             None
         }
         (None, Dimension::Space) => {
-            let help = "such as axis = [0, 0, 1]".to_owned();
-            report.at(&path, format!("`{rotation}` has no `axis`, which a rotation in space needs"), help);
+            let message = format!("`{rotation}` has no `axis`, which a rotation in space needs");
+            here.wrong(message, "such as axis = [0, 0, 1]");
             None
         }
-        (Some(axis), Dimension::Space) => {
-            vector(axis, dimension, &path, report).and_then(|axis| direction(axis, &path, report))
-        }
+        (Some(axis), Dimension::Space) => direction(vector(axis, dimension, &here)?, &here),
     }
 }
 
@@ -38,43 +30,33 @@ fn offset(
     shift: Option<&Coordinates>,
     rotation: Option<&Rotation>,
     dimension: Dimension,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
+    here: &Here<'_>,
 ) -> Option<Offset> {
     let shift = match shift {
-        Some(typed) => vector(typed, dimension, &key_path![path; "shift"], report),
+        Some(typed) => vector(typed, dimension, &here.to("shift")),
         None => Some(DVec3::ZERO),
     };
     let rotation = match rotation {
-        Some(typed) => {
-            let axis = axis(typed.axis.as_ref(), dimension, &key_path![path; "rotation"], report);
-            axis.map(|axis| axis * typed.angle)
-        }
+        Some(typed) => axis(typed.axis.as_ref(), dimension, &here.to("rotation")).map(|axis| axis * typed.angle),
         None => Some(DVec3::ZERO),
     };
     Some(Offset { shift: shift?, rotation: rotation? })
 }
 
 /// A path of keyframes. With a single key it is constant.
-pub(super) fn keys(
-    typed: &MotionPath,
-    dimension: Dimension,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Motion> {
+pub(super) fn keys(typed: &MotionPath, dimension: Dimension, here: &Here<'_>) -> Option<Motion> {
     let mut keys = Vec::with_capacity(typed.keys.len());
     let mut in_order = true;
     for (at, key) in typed.keys.iter().enumerate() {
-        let path = key_path![path; "keys", at];
+        let here = here.to("keys").to(at);
         if let Some(before) =
             at.checked_sub(1).map(|before| typed.keys[before].time).filter(|&before| before >= key.time)
         {
-            let message =
-                format!("`{}` is at {} s, not later than the key before it at {before} s", written(&path), key.time);
-            report.at(&key_path![path; "time"], message, "list the keys in rising order of time".to_owned());
+            let message = format!("`{here}` is at {} s, not later than the key before it at {before} s", key.time);
+            here.to("time").wrong(message, "list the keys in rising order of time");
             in_order = false;
         }
-        let offset = offset(key.shift.as_ref(), key.rotation.as_ref(), dimension, &path, report);
+        let offset = offset(key.shift.as_ref(), key.rotation.as_ref(), dimension, &here);
         keys.extend(offset.map(|offset| Key { time: key.time, offset }));
     }
     if keys.len() < typed.keys.len() || !in_order {
@@ -82,15 +64,13 @@ pub(super) fn keys(
     }
     if let (true, Some(first), Some(last)) = (typed.repeat, keys.first(), keys.last()) {
         if keys.len() == 1 {
-            let message = format!("`{}` repeats, but has a single key", written(path));
-            report.at(path, message, "add keys, or remove `repeat`");
+            here.wrong(format!("`{here}` repeats, but has a single key"), "add keys, or remove `repeat`");
             return None;
         }
         if !same(first.offset, last.offset) {
-            let message =
-                format!("`{}` repeats, but does not end where it begins, so the motion would jump", written(path));
-            let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns".to_owned();
-            report.at(&key_path![path; "keys", keys.len() - 1], message, help);
+            let message = format!("`{here}` repeats, but does not end where it begins, so the motion would jump");
+            let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns";
+            here.to("keys").to(keys.len() - 1).wrong(message, help);
             return None;
         }
     }
@@ -107,32 +87,26 @@ fn same(one: Offset, other: Offset) -> bool {
 }
 
 /// An oscillation.
-pub(super) fn swing(
-    typed: &Swing,
-    dimension: Dimension,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Motion> {
+pub(super) fn swing(typed: &Swing, dimension: Dimension, here: &Here<'_>) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
-        let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
-        report.at(path, message, "such as shift = [0.1, 0, 0]");
+        let message = format!("`{here}` has neither `shift` nor `rotation`: nothing would move");
+        here.wrong(message, "such as shift = [0.1, 0, 0]");
         return None;
     }
-    let amplitude = offset(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, path, report)?;
+    let amplitude = offset(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, here)?;
     Some(Motion::Swing { period: typed.period, phase: typed.phase, amplitude })
 }
 
 /// Reports keys that are closer to each other than a time step (s).
-pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+pub(super) fn check_steps(typed: &MotionPath, step: f64, here: &Here<'_>) {
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;
         if apart > 0.0 && apart < step {
-            let key = key_path![path; "keys", at + 1];
+            let key = here.to("keys").to(at + 1);
             let message = format!(
-                "`{}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: the motion would jump",
-                written(&key)
+                "`{key}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: the motion would jump"
             );
-            report.at(&key_path![key; "time"], message, "leave more time between them".to_owned());
+            key.to("time").wrong(message, "leave more time between them");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{choice, vector};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, PathPart, key_path, written};
+use crate::reading::collector::Here;
 use crate::reading::words::{count, fine, list, nearest, quoted};
 use crate::scene::SceneBody;
 use crate::scene::file::{NodesFile, RegionFile, Side};
@@ -25,22 +25,16 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// A place as typed at a path; `None` after reporting a mistake.
-    pub(super) fn new(
-        region: &RegionFile,
-        dimension: Dimension,
-        path: &[PathPart<'_>],
-        report: &mut Collector<'_>,
-    ) -> Option<Self> {
-        let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
+    /// A place as typed; `None` after reporting a mistake.
+    pub(super) fn new(region: &RegionFile, dimension: Dimension, here: &Here<'_>) -> Option<Self> {
+        let point = |typed, key| vector(typed, dimension, &here.to(key));
         match region {
             RegionFile { of: Some(of), within: Some(within), .. } => Some(Self::Ball(point(of, "of")?, *within)),
             RegionFile { low: Some(low), high: Some(high), .. } => {
                 let (low, high) = (point(low, "low"), point(high, "high"));
                 let (low, high) = (low?, high?);
                 if low.cmpgt(high).any() {
-                    let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
-                    report.at(&key_path![path; "low"], message, None);
+                    here.to("low").wrong(format!("`{here}.low` does not lie below `high` along every axis"), None);
                     return None;
                 }
                 Some(Self::Box(low, high))
@@ -60,13 +54,8 @@ impl Place {
 }
 
 /// The elements of a body with a corner on its side of a name at rest, or with all corners in its group of this name; `None` after reporting a mistake.
-pub(super) fn named_cells(
-    name: &str,
-    of: &SceneBody,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Vec<u32>> {
-    let nodes = named(name, std::slice::from_ref(of), path, report)?.pop()?;
+pub(super) fn named_cells(name: &str, of: &SceneBody, here: &Here<'_>) -> Option<Vec<u32>> {
+    let nodes = named(name, std::slice::from_ref(of), here)?.pop()?;
     let is_group = of.groups.iter().any(|group| group.name == name);
     let mut is_chosen = vec![false; of.body.len()];
     nodes.iter().for_each(|&node| is_chosen[node as usize] = true);
@@ -78,60 +67,58 @@ pub(super) fn named_cells(
 }
 
 /// The selected nodes of each body, in rising order: those of the body of a `name`, or of all; all nodes unless some are typed, under a key.
-/// `None` after reporting a mistake in a constraint or a load at a path.
+/// `None` after reporting a mistake in a constraint or a load.
 pub(super) fn select(
     name: Option<&str>,
     typed: Option<&NodesFile>,
     bodies: &[SceneBody],
-    (path, key): (&[PathPart<'_>], &str),
-    report: &mut Collector<'_>,
+    (here, key): (&Here<'_>, &str),
 ) -> Option<Vec<Vec<u32>>> {
     let chosen = match name {
         Some(name) => {
             let names: Vec<_> = bodies.iter().map(|one| one.name.as_str()).collect();
-            let body = choice::find(name, &names, &key_path![path; "body"], report)?;
+            let body = choice::find(name, &names, &here.to("body"))?;
             body..body + 1
         }
         None => 0..bodies.len(),
     };
-    let path = key_path![path; key];
+    let here = here.to(key);
     let found = match (typed, &bodies[chosen.clone()]) {
         (None, bodies) => bodies.iter().map(|one| (0..one.body.len() as u32).collect()).collect(),
-        (Some(NodesFile::List(list)), [only]) => vec![listed(list, only, &path, report)?],
+        (Some(NodesFile::List(list)), [only]) => vec![listed(list, only, &here)?],
         (Some(NodesFile::List(_)), several) => {
-            let message =
-                format!("`{}` is a list of nodes, but the scene has {} bodies", written(&path), several.len());
+            let message = format!("`{here}` is a list of nodes, but the scene has {} bodies", several.len());
             let help = several.first().map(|first| format!("name their body, such as body = {}", quoted(&first.name)));
-            report.at(&path, message, help);
+            here.wrong(message, help);
             return None;
         }
-        (Some(NodesFile::Named(name)), bodies) => named(name, bodies, &path, report)?,
-        (Some(NodesFile::Region(region)), bodies) => within(region, bodies, &path, report)?,
+        (Some(NodesFile::Named(name)), bodies) => named(name, bodies, &here)?,
+        (Some(NodesFile::Region(region)), bodies) => within(region, bodies, &here)?,
     };
     let mut nodes = vec![Vec::new(); bodies.len()];
     nodes.splice(chosen, found);
     Some(nodes)
 }
 
-fn listed(list: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
-    let (before, count) = (report.total(), body.body.len());
+fn listed(list: &[u32], body: &SceneBody, here: &Here<'_>) -> Option<Vec<u32>> {
+    let (before, count) = (here.report.total(), body.body.len());
     let mut first = HashMap::new();
     for (place, &node) in list.iter().enumerate() {
-        let at = key_path![path; place];
+        let at = here.to(place);
         if node as usize >= count {
             let message = format!("there is no node {node}; {} has nodes 0 to {}", body.in_words(), count - 1);
-            report.at(&at, message, None);
+            at.wrong(message, None);
         } else if first.insert(node, place).is_some() {
-            report.at(&at, format!("node {node} occurs twice in `{}`", written(path)), None);
+            at.wrong(format!("node {node} occurs twice in `{here}`"), None);
         }
     }
     let mut nodes = list.to_vec();
     nodes.sort_unstable();
-    (report.total() == before).then_some(nodes)
+    (here.report.total() == before).then_some(nodes)
 }
 
 /// The nodes of each body: of its group with this name, or else of its side at rest.
-fn named(name: &str, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<Vec<u32>>> {
+fn named(name: &str, bodies: &[SceneBody], here: &Here<'_>) -> Option<Vec<Vec<u32>>> {
     /// The most groups that are named in a message.
     const NAMED: usize = 20;
     let of_body = |body: &SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
@@ -147,8 +134,8 @@ fn named(name: &str, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut C
     }
     if side.is_some() {
         let (side, body) = (quoted(name), bodies[0].in_words());
-        let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
-        report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
+        let message = format!("`{here}` is {side}, but {body} is in the plane");
+        here.wrong(message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
         return None;
     }
     let sides: Vec<String> = Side::ALL.iter().filter(|side| is_there(side)).map(typed).collect();
@@ -164,7 +151,7 @@ fn named(name: &str, bodies: &[SceneBody], path: &[PathPart<'_>], report: &mut C
         }
     };
     let help = nearest(name, &known).map(|near| format!("did you mean {}?", quoted(near)));
-    report.at(path, format!("`{}` is {}; {expected}", written(path), quoted(name)), help);
+    here.wrong(format!("`{here}` is {}; {expected}", quoted(name)), help);
     None
 }
 
@@ -185,30 +172,25 @@ fn of_side(side: Side, body: &Body) -> Vec<u32> {
 }
 
 /// The nodes of each body that start in a region.
-fn within(
-    region: &RegionFile,
-    bodies: &[SceneBody],
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Vec<Vec<u32>>> {
+fn within(region: &RegionFile, bodies: &[SceneBody], here: &Here<'_>) -> Option<Vec<Vec<u32>>> {
     let dimension = bodies[0].body.dimension();
-    let place = Place::new(region, dimension, path, report)?;
+    let place = Place::new(region, dimension, here)?;
     let inside = |of: &SceneBody| {
         let close = round_off(&of.body);
         (0..).zip(&of.initial.position).filter(|(_, at)| place.has(**at, close)).map(|(node, _)| node).collect()
     };
     let nodes: Vec<Vec<u32>> = bodies.iter().map(inside).collect();
     if matches!(place, Place::Box(..)) {
-        bodies.iter().zip(&nodes).for_each(|(body, nodes)| warn_of_rest(nodes, body, path, report));
+        bodies.iter().zip(&nodes).for_each(|(body, nodes)| warn_of_rest(nodes, body, here));
     }
     if nodes.iter().all(Vec::is_empty) {
-        let message = format!("`{}` is a region without nodes at the start", written(path));
         let all: Vec<DVec3> = bodies.iter().flat_map(|one| &one.initial.position).copied().collect();
         let start = match bodies {
             [only] => format!("{} starts", only.in_words()),
             _ => "the bodies start".to_owned(),
         };
-        report.at(path, message, format!("{start} {}", between(&all, dimension)));
+        let message = format!("`{here}` is a region without nodes at the start");
+        here.wrong(message, format!("{start} {}", between(&all, dimension)));
         return None;
     }
     Some(nodes)
@@ -242,7 +224,7 @@ fn layers_of(body: &Body) -> Vec<Layers> {
 /// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at
 /// another place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them
 /// along the others. Boxes around rows and corners are thin along several axes.
-fn warn_of_rest(nodes: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+fn warn_of_rest(nodes: &[u32], body: &SceneBody, here: &Here<'_>) {
     if nodes.is_empty() || nodes.len() == body.body.len() {
         return;
     }
@@ -267,13 +249,12 @@ fn warn_of_rest(nodes: &[u32], body: &SceneBody, path: &[PathPart<'_>], report: 
             several => (format!("{} layers", count(several as u128)), "these layers start"),
         };
         let message = format!(
-            "`{}` takes {} of the {} nodes of {what} of {}",
-            written(path),
+            "`{here}` takes {} of the {} nodes of {what} of {}",
             count(nodes.len() as u128),
             count(whole.len() as u128),
             body.in_words(),
         );
-        report.warn(path, message, format!("{these} {}", between(&whole, dimension)));
+        here.warn(message, format!("{these} {}", between(&whole, dimension)));
     }
 }
 

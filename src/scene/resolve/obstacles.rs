@@ -1,9 +1,9 @@
 //! Obstacles.
 
 use super::motion::{self, axis};
-use super::{direction, vector};
+use super::{Typed, direction, elements, vector};
 use crate::reading::captions::{quantity, rounded};
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::Here;
 use crate::scene::SceneBody;
 use crate::scene::file::{Coordinates, ObstacleFile, SceneFile, ShapeFile};
 use crate::sim::geometry::{bounds, is_inside};
@@ -11,24 +11,18 @@ use crate::sim::{Dimension, Motion, Obstacle, Shape};
 use glam::{DQuat, DVec3};
 
 /// The obstacles, or `None` after reporting every mistake in them.
-pub(super) fn resolve(
-    file: &SceneFile,
-    dimension: Option<Dimension>,
-    bodies: &[&SceneBody],
-    report: &mut Collector<'_>,
-) -> Option<Vec<Obstacle>> {
+pub(super) fn resolve(scene: &Typed<'_>, dimension: Option<Dimension>, bodies: &[&SceneBody]) -> Option<Vec<Obstacle>> {
     let dimension = dimension?;
-    let (typed, is_by_nodes) = (&file.obstacle, file.meets_by_nodes());
     let mut obstacles = Vec::new();
-    for (at, obstacle) in typed.iter().enumerate() {
-        let Some(typed) = obstacle else { continue };
-        let path = key_path!["obstacle", at];
-        let Some(obstacle) = one(typed, dimension, &path, report) else { continue };
+    for (here, typed) in scene.each("obstacle", &scene.file.obstacle) {
+        let Some(obstacle) = one(typed, dimension, &here) else { continue };
         // Where surfaces meet, they are compared once all bodies of a run are known.
-        bodies.iter().filter(|_| is_by_nodes).for_each(|body| check_start(&obstacle, body, &path, report));
+        if scene.file.meets_by_nodes() {
+            bodies.iter().for_each(|body| check_start(&obstacle, body, &here));
+        }
         obstacles.push(obstacle);
     }
-    (obstacles.len() == typed.len()).then_some(obstacles)
+    (obstacles.len() == scene.file.obstacle.len()).then_some(obstacles)
 }
 
 /// The name of each obstacle, or its place in the file.
@@ -37,25 +31,17 @@ pub(super) fn names(file: &SceneFile) -> Vec<String> {
     given.enumerate().map(|(at, name)| name.unwrap_or_else(|| format!("obstacle[{at}]"))).collect()
 }
 
-fn one(
-    typed: &ObstacleFile,
-    dimension: Dimension,
-    path: &[PathPart<'_>],
-    report: &mut Collector<'_>,
-) -> Option<Obstacle> {
-    let shape = shape(&typed.shape, dimension, path, report);
+fn one(typed: &ObstacleFile, dimension: Dimension, here: &Here<'_>) -> Option<Obstacle> {
+    let shape = shape(&typed.shape, dimension, here);
     let motion = match (&typed.path, &typed.swing) {
-        (Some(typed), _) => motion::keys(typed, dimension, &key_path![path; "path"], report),
-        (None, Some(typed)) => motion::swing(typed, dimension, &key_path![path; "swing"], report),
+        (Some(typed), _) => motion::keys(typed, dimension, &here.to("path")),
+        (None, Some(typed)) => motion::swing(typed, dimension, &here.to("swing")),
         (None, None) => Some(Motion::Still),
     };
-    let about = typed.about.as_ref().map(|typed| vector(typed, dimension, &key_path![path; "about"], report));
-    if typed.friction_of.is_some() && !report.is_typed(&key_path![path; "friction"]) {
-        report.at_key(
-            &key_path![path; "friction_of"],
-            "`friction_of` needs `friction`",
-            "give `friction`, or remove `friction_of`",
-        );
+    let about = typed.about.as_ref().map(|typed| vector(typed, dimension, &here.to("about")));
+    if typed.friction_of.is_some() && !here.to("friction").is_typed() {
+        let message = "`friction_of` needs `friction`";
+        here.to("friction_of").wrong_key(message, "give `friction`, or remove `friction_of`");
     }
     let (shape, motion) = (shape?, motion?);
     let pivot = match about {
@@ -72,33 +58,32 @@ fn one(
     })
 }
 
-fn shape(typed: &ShapeFile, dimension: Dimension, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Shape> {
-    let path = |key| key_path![path; key];
-    let mut point = |typed: &Coordinates, key| vector(typed, dimension, &path(key), report);
+fn shape(typed: &ShapeFile, dimension: Dimension, here: &Here<'_>) -> Option<Shape> {
+    let point = |typed: &Coordinates, key| vector(typed, dimension, &here.to(key));
     match typed {
         ShapeFile::Floor { normal, height } => {
             let normal = match normal {
                 None => DVec3::Y,
-                Some(typed) => direction(point(typed, "normal")?, &path("normal"), report)?,
+                Some(typed) => direction(point(typed, "normal")?, &here.to("normal"))?,
             };
             Some(Shape::Floor { normal, height: *height })
         }
         ShapeFile::Plate { point: surface, normal } => {
-            let [surface, normal] = [(surface, "point"), (normal, "normal")].map(|(typed, key)| point(typed, key));
-            Some(Shape::Plate { point: surface?, normal: direction(normal?, &path("normal"), report)? })
+            let (surface, normal) = (point(surface, "point"), point(normal, "normal"));
+            Some(Shape::Plate { point: surface?, normal: direction(normal?, &here.to("normal"))? })
         }
         ShapeFile::Sphere { centre, radius } => {
             Some(Shape::Sphere { centre: point(centre, "centre")?, radius: *radius })
         }
         ShapeFile::Capsule { from, to, radius } => {
-            let [from, to] = [(from, "from"), (to, "to")].map(|(typed, key)| point(typed, key));
+            let (from, to) = (point(from, "from"), point(to, "to"));
             Some(Shape::Capsule { from: from?, to: to?, radius: *radius })
         }
         ShapeFile::Box { centre, size, rotation } => {
-            let [centre, size] = [(centre, "centre"), (size, "size")].map(|(typed, key)| point(typed, key));
+            let (centre, size) = (point(centre, "centre"), point(size, "size"));
             let rotation = match rotation {
                 Some(typed) => {
-                    let axis = axis(typed.axis.as_ref(), dimension, &path("rotation"), report)?;
+                    let axis = axis(typed.axis.as_ref(), dimension, &here.to("rotation"))?;
                     let (sine, cosine) = libm::sincos(0.5 * typed.angle);
                     DQuat::from_xyzw(axis.x * sine, axis.y * sine, axis.z * sine, cosine)
                 }
@@ -128,7 +113,7 @@ pub(super) fn shape_name(shape: &Shape) -> &'static str {
 }
 
 /// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
-fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
+fn check_start(obstacle: &Obstacle, body: &SceneBody, here: &Here<'_>) {
     let (placed, of, name) = (obstacle.at(0.0, 1.0), body.in_words(), shape_name(&obstacle.shape));
     let depths = (0..).zip(&body.initial.position).filter_map(|(node, &at): (usize, _)| {
         let (contact, _) = placed.contact(at)?;
@@ -145,7 +130,7 @@ fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], rep
             Shape::Floor { .. } => "move the floor, or set the body on it with its `lowest` or `offset`",
             _ => "move one of them; a path can move the obstacle there later",
         };
-        return report.at(path, message, help);
+        return here.wrong(message, help);
     }
     let (pose, pivot) = (obstacle.pose(0.0), obstacle.pivot);
     let (low, high) = bounds(&body.initial.position);
@@ -158,11 +143,10 @@ fn check_start(obstacle: &Obstacle, body: &SceneBody, path: &[PathPart<'_>], rep
     let is_within = |&point: &DVec3| is_inside(point, &body.body, &body.initial.position);
     let within = points.into_iter().step_by(stride).find(is_within);
     if let Some(point) = within {
-        let [x, y, z] = point.to_array().map(|at| rounded(at, 4) + 0.0);
-        let point =
-            if body.body.dimension() == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
+        let near = DVec3::from(point.to_array().map(|at| rounded(at, 4) + 0.0));
+        let point = elements::point(near, body.body.dimension());
         let message = format!("this {name} starts inside {of}, at {point}, between its nodes");
-        report.at(path, message, "move one of them; bodies collide with an obstacle from outside");
+        here.wrong(message, "move one of them; bodies collide with an obstacle from outside");
     }
 }
 
@@ -197,17 +181,15 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
 }
 
 /// Reports motions that are too fast for the time step, so that the obstacle would jump.
-pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Collector<'_>) {
-    for (at, obstacle) in typed.iter().enumerate() {
-        let Some(obstacle) = obstacle else { continue };
-        let path = key_path!["obstacle", at];
+pub(super) fn check_steps(scene: &Typed<'_>, step: f64) {
+    for (here, obstacle) in scene.each("obstacle", &scene.file.obstacle) {
         if let Some(typed) = &obstacle.path {
-            motion::check_steps(typed, step, &key_path![path; "path"], report);
+            motion::check_steps(typed, step, &here.to("path"));
         }
         if let Some(swing) = obstacle.swing.as_ref().filter(|swing| swing.period < LEAST_STEPS * step) {
             let message = format!("one oscillation takes {} s, but a time step takes {step:.3e} s", swing.period);
             let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
-            report.at(&key_path![path; "swing", "period"], message, help);
+            here.to("swing").to("period").wrong(message, help);
         }
     }
 }

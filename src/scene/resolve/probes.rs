@@ -3,21 +3,19 @@
 use super::choice::check_names;
 use super::nodes::select;
 use super::{Typed, obstacles};
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Here;
 use crate::reading::words::quoted;
 use crate::scene::file::ProbeFile;
 use crate::scene::{Probe, SceneBody};
 
 /// The probes, or `None` after reporting every mistake in them.
-pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Collector<'_>) -> Option<Vec<Probe>> {
-    let typed = || scene.file.probe.iter().enumerate();
-    let named = typed().map(|(at, probe)| (key_path!["probe", at].to_vec(), probe.as_ref().map(|one| &*one.name)));
-    check_names(["probe", "probes"], named, report);
+pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Vec<Probe>> {
+    let typed = || scene.each("probe", &scene.file.probe);
+    check_names(["probe", "probes"], typed().map(|(here, probe)| (here, Some(&*probe.name))));
     let others = obstacles::names(scene.file);
     let places = |key: &'static str, count: usize| (0..count).map(move |at| format!("{key}[{at}]"));
     let grips: Vec<_> = places("hold", scene.file.hold.len()).chain(places("grab", scene.file.grab.len())).collect();
-    let probe = |(at, typed): (usize, &Option<ProbeFile>)| {
-        let (typed, path) = (typed.as_ref()?, key_path!["probe", at]);
+    let probe = |(here, typed): (Here<'_>, &ProbeFile)| {
         let kinds = [
             ("a body", bodies.iter().any(|body| body.name == typed.name)),
             ("an obstacle", others.contains(&typed.name)),
@@ -25,11 +23,11 @@ pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody], report: &mut Coll
         ];
         if let Some((other, _)) = kinds.into_iter().find(|(_, is_called)| *is_called) {
             let message = format!("{other} and a probe are called {}", quoted(&typed.name));
-            report.at(&key_path![path; "name"], message, "give the probe another name");
+            here.to("name").wrong(message, "give the probe another name");
         }
-        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&path, "nodes"), report)?;
+        let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&here, "nodes"))?;
         Some(Probe { name: typed.name.clone(), nodes })
     };
-    let all: Vec<_> = typed().map(probe).collect();
-    all.into_iter().collect()
+    let all: Vec<_> = typed().filter_map(probe).collect();
+    (all.len() == scene.file.probe.len()).then_some(all)
 }

@@ -1,9 +1,9 @@
 //! The recordings of runs: archives beside the scene, and the bodies in them.
 
 use super::lists::{ListSource, Lists};
-use super::{KeyPath, Typed, body, mesh};
+use super::{Typed, body, mesh};
 use crate::reading::beside::{ending, missing};
-use crate::reading::collector::{Collector, key_path, written};
+use crate::reading::collector::{Here, key_path};
 use crate::reading::words::{count, hexadecimal, list, nearest};
 use crate::scene::file::{Positive, RunFile, StatesFile, Up};
 use crate::scene::recording::{Archive, Axes, Flaw, Recorded};
@@ -17,18 +17,18 @@ use std::sync::Arc;
 
 /// A recording of a run.
 #[derive(Debug)]
-pub(super) struct ReadRecording {
+pub(super) struct ReadRecording<'a> {
     recorded: Recorded,
-    own: Own,
-    source: ListSource,
+    own: Own<'a>,
+    source: ListSource<'a>,
 }
 
 /// The body that comes with a recording.
 #[derive(Debug)]
-enum Own {
+enum Own<'a> {
     Nothing,
     /// Its nodes at rest and its elements.
-    Rest(Box<Lists>),
+    Rest(Box<Lists<'a>>),
     /// The points and cells of the first moment. The rest shape is not known.
     Moment {
         cells: Box<Cells>,
@@ -37,28 +37,21 @@ enum Own {
     },
 }
 
-/// The bodies that a recording shows.
-pub(super) enum Shown {
-    /// The bodies of its run.
-    Bodies(Box<State>),
-    /// A body of its own.
-    Own(Box<SceneBody>),
-}
-
-impl ReadRecording {
+impl<'a> ReadRecording<'a> {
     /// The recording of a run, if it has one; `None` after reporting its mistakes, too.
-    pub(super) fn read(scene: &Typed<'_>, at: usize, report: &mut Collector<'_>) -> Option<Self> {
-        let (folder, limits, run) = (scene.folder, scene.limits, scene.file.run[at].as_ref()?);
+    pub(super) fn read(scene: &Typed<'a>, at: usize) -> Option<Self> {
+        let Typed { folder, limits, report, .. } = *scene;
+        let (run, here) = (scene.file.run[at].as_ref()?, report.here(&key_path!["run", at]));
         let rate = scene.file.time.as_ref().map_or(1.0, |time| time.frames_per_second);
-        let (source, chosen) = run.states.as_ref()?.source(at);
+        let (source, chosen) = run.states.as_ref()?.source(&here);
         let (ListSource { body: place, file: Some((file, _)) }, known) = (&source, report.total()) else { return None };
         let path = folder.join(file);
         let scale = run.scale.map_or(1.0, |Positive(scale)| scale);
         let axes = Axes { up: run.up.unwrap_or_default(), scale };
-        let open = |report: &mut Collector<'_>| -> Result<_, Flaw> {
+        let open = || -> Result<_, Flaw> {
             if sequence::is_one(file) {
                 let Sequence { archive, mut cells, has_elements, notes } = Sequence::read(folder, file, rate, limits)?;
-                let note = |(message, help)| report.warn(place, format!("`{file}` {message}"), help);
+                let note = |(message, help)| place.warn(format!("`{file}` {message}"), help);
                 notes.into_iter().for_each(note);
                 axes.place(&mut cells.points);
                 let recorded = Archive::of(archive, &path, chosen, &run.name)?.recorded(axes, limits)?;
@@ -77,22 +70,21 @@ impl ReadRecording {
             }
             let mut archive = Archive::open(&path, chosen, &run.name)?;
             let (npz, name) = archive.parts();
-            check_names(&npz.names(), name, file, place, report);
-            let own = Lists::recorded(npz, name, source.clone(), limits, report).map(|mut own| {
+            check_names(&npz.names(), name, file, place);
+            let own = Lists::recorded(npz, name, source.clone(), limits).map(|mut own| {
                 axes.place(&mut own.nodes);
                 Own::Rest(Box::new(own))
             });
             let recorded = archive.recorded(axes, limits)?;
             if recorded.columns == 2 && axes.up == Up::Z {
-                let up = key_path!["run", at, "up"];
-                let message = format!("`{}` is \"z\", but `{file}` is in the plane", written(&up));
-                report.at(&up, message, "expected \"x\" or \"y\"");
+                let up = here.to("up");
+                up.wrong(format!("`{up}` is \"z\", but `{file}` is in the plane"), "expected \"x\" or \"y\"");
             }
             Ok((recorded, own.unwrap_or(Own::Nothing)))
         };
-        match open(report) {
+        match open() {
             Ok((recorded, own)) => (report.total() == known).then_some(Self { recorded, own, source }),
-            Err(flaw) => source.tell(flaw, report),
+            Err(flaw) => source.tell(flaw),
         }
     }
 
@@ -106,40 +98,42 @@ impl ReadRecording {
         self.recorded.digest.clone() + &own
     }
 
-    /// The recording, and whether its body is the scene's; `None` after reporting a mistake. `whole` are all bodies of the run as one.
-    pub(super) fn shown(
-        self,
-        run: &RunFile,
-        whole: &Body,
-        report: &mut Collector<'_>,
-    ) -> Option<(Arc<Recorded>, Shown)> {
-        let (source, known) = (self.source, report.total());
+    /// The recording, its state at the start, and its body unless it is the scene's; `None` after reporting a mistake. `whole` are all bodies of
+    /// the run as one.
+    pub(super) fn shown(self, run: &RunFile, whole: &Body) -> Option<(Arc<Recorded>, State, Option<SceneBody>)> {
+        let source = self.source;
+        let (report, known) = (source.body.report, source.body.report.total());
         let (recorded, own) = match self.own.of(self.recorded, whole, &source) {
             Ok((recorded, own)) => (Arc::new(recorded), own),
-            Err(flaw) => return source.tell(flaw, report),
+            Err(flaw) => return source.tell(flaw),
         };
         let start = recorded.start();
         let start = State::new(start.position, start.velocity);
-        let Some((own, turned, notes)) = own else { return Some((recorded, Shown::Bodies(Box::new(start)))) };
+        let Some((own, turned, notes)) = own else { return Some((recorded, start, None)) };
         if run.bodies.is_some() {
             let help = "remove `bodies`, so that its own body is shown";
-            return source.tell(Flaw::new("", "has another body than those in `bodies`").with_help(help), report);
+            return source.tell(Flaw::new("", "has another body than those in `bodies`").with_help(help));
         }
         if let Some((file, place)) = &source.file {
-            mesh::warn_of_turned(turned, own.elements.len(), file, place, report);
-            notes.iter().for_each(|note| report.warn(place, format!("`{file}` {note}"), None));
+            mesh::warn_of_turned(turned, own.elements.len(), file, place);
+            notes.iter().for_each(|note| place.warn(format!("`{file}` {note}"), None));
         }
-        let made = body::recorded(own, run.name.clone(), start, report)?;
-        (report.total() == known).then(|| (recorded, Shown::Own(Box::new(made))))
+        let made = body::recorded(own, run.name.clone(), start.clone())?;
+        (report.total() == known).then_some((recorded, start, Some(made)))
     }
 }
 
 /// A body of a recording's own, the number of its elements that were turned over, and the parts left out of its file.
-type Listed = (Lists, usize, Vec<String>);
+type Listed<'a> = (Lists<'a>, usize, Vec<String>);
 
-impl Own {
+impl<'a> Own<'a> {
     /// The recording of a body, and the body unless it is the whole of a run.
-    fn of(self, recorded: Recorded, whole: &Body, source: &ListSource) -> Result<(Recorded, Option<Listed>), Flaw> {
+    fn of(
+        self,
+        recorded: Recorded,
+        whole: &Body,
+        source: &ListSource<'a>,
+    ) -> Result<(Recorded, Option<Listed<'a>>), Flaw> {
         let dimension = whole.dimension();
         let wrong = match (dimension, recorded.columns) {
             (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
@@ -195,7 +189,7 @@ const ARRAYS: [&str; 9] = ["position", "time", "velocity", "rest", "elements", "
 const OWN: [&str; 4] = ["memory", "body", "bodies", COURSE];
 
 /// Reports arrays of a body without its nodes, and warns of arrays that are not read.
-fn check_names(names: &[String], run: &str, file: &str, place: &KeyPath, report: &mut Collector<'_>) {
+fn check_names(names: &[String], run: &str, file: &str, here: &Here<'_>) {
     let key = |name: &str| name.strip_prefix(run).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name).to_owned();
     // Those with a point belong to other runs.
     let keys: Vec<_> = names.iter().map(|name| (name, key(name))).filter(|(_, key)| !key.contains('.')).collect();
@@ -203,34 +197,34 @@ fn check_names(names: &[String], run: &str, file: &str, place: &KeyPath, report:
     for (name, key) in &keys {
         if ["elements", "faces", "mass"].contains(&&**key) && !has_rest {
             let message = format!("`{file}: {name}` belongs to a body, whose nodes at rest are missing");
-            report.at(place, message, "expected `rest` and `elements` beside it, or neither".to_owned());
+            here.wrong(message, "expected `rest` and `elements` beside it, or neither");
         } else if !ARRAYS.contains(&&**key) && !OWN.contains(&&**key) {
             let help = match nearest(key, &ARRAYS) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
             };
-            report.warn(place, format!("`{file}: {name}` is not an array of a recording, and is not read"), help);
+            here.warn(format!("`{file}: {name}` is not an array of a recording, and is not read"), help);
         }
     }
 }
 
 impl StatesFile {
     /// Their file and its place in a run of the scene, and the chosen run in it.
-    fn source(&self, at: usize) -> (ListSource, Option<&str>) {
+    fn source<'a>(&self, run: &Here<'a>) -> (ListSource<'a>, Option<&str>) {
         let (file, place, chosen) = match self {
-            Self::File(file) => (file, key_path!["run", at, "states"].to_vec(), None),
-            Self::OfRun(of) => (&of.file, key_path!["run", at, "states", "file"].to_vec(), of.run.as_deref()),
+            Self::File(file) => (file, run.to("states"), None),
+            Self::OfRun(of) => (&of.file, run.to("states").to("file"), of.run.as_deref()),
         };
         (ListSource { body: place.clone(), file: Some((file.clone(), place)) }, chosen)
     }
 }
 
-impl ListSource {
+impl ListSource<'_> {
     /// Reports a mistake in a recording.
-    fn tell<T>(&self, Flaw { place, message, help }: Flaw, report: &mut Collector<'_>) -> Option<T> {
+    fn tell<T>(&self, Flaw { place, message, help }: Flaw) -> Option<T> {
         let (file, at) = self.file.as_ref()?;
         let found = if place.is_empty() { file.clone() } else { self.name(&place, &[]) };
-        report.at(at, format!("`{found}` {message}"), help);
+        at.wrong(format!("`{found}` {message}"), help);
         None
     }
 }

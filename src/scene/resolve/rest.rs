@@ -9,10 +9,10 @@ use crate::sim::{Crew, NoEquilibrium, equilibrium};
 use rayon::prelude::*;
 
 /// Moves the bodies of each run to where they are at rest, if the scene asks for it.
-pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Collector<'_>) {
+pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics) {
     let asked = scene.file.time.as_ref().and_then(|time| time.start);
     // Without a part that has mistakes, rest would be elsewhere.
-    let (Some(StartFile::Equilibrium), 0) = (asked, report.total()) else { return };
+    let (Some(StartFile::Equilibrium), 0) = (asked, scene.report.total()) else { return };
     let Physics { gravity: Some(gravity), obstacles: Some(obstacles), contacts, bodies, runs: Some(runs), .. } =
         physics
     else {
@@ -28,13 +28,13 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
     for (run, found) in runs.iter_mut().zip(found) {
         match found {
             Some(Ok(found)) => {
-                warn_of_small_loads(run, found.residual, report);
+                warn_of_small_loads(run, found.residual, scene.report);
                 run.rest = Some(Rest { residual: found.residual, evaluations: found.evaluations });
                 run.placed = Some(std::mem::replace(&mut run.initial.position, found.position));
             }
             Some(Err(why)) => {
                 // Other runs mostly have the same mistake.
-                refuse(run, &why, bodies.as_deref().unwrap_or_default(), report);
+                refuse(run, &why, bodies.as_deref().unwrap_or_default(), scene.report);
                 return;
             }
             None => {}
@@ -43,7 +43,7 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics, report: &mut Colle
 }
 
 /// Warns of a state of rest in which round-off of the elastic forces is all that is balanced.
-fn warn_of_small_loads(run: &Run, residual: f64, report: &mut Collector<'_>) {
+fn warn_of_small_loads(run: &Run, residual: f64, report: &Collector<'_>) {
     /// The share of the load above which what is left is told.
     const MUCH: f64 = 0.02;
     if residual > MUCH {
@@ -56,7 +56,7 @@ fn warn_of_small_loads(run: &Run, residual: f64, report: &mut Collector<'_>) {
 }
 
 /// Reports a run that has no state of rest.
-fn refuse(run: &Run, why: &NoEquilibrium, bodies: &[SceneBody], report: &mut Collector<'_>) {
+fn refuse(run: &Run, why: &NoEquilibrium, bodies: &[SceneBody], report: &Collector<'_>) {
     let name = quoted(&run.name);
     let (why, help) = match *why {
         NoEquilibrium::Unheld { body, force } => {

@@ -1,14 +1,14 @@
 //! The runs: their bodies, models and integrators.
 
 use super::Typed;
-use super::choice::{self, Choice, TypedModel};
+use super::choice::{Choice, TypedModel};
 use super::grips::SceneGrip;
 use super::loads::SceneLoad;
-use super::recordings::{ReadRecording, Shown};
+use super::recordings::ReadRecording;
 use super::steps::Steps;
 use crate::look::LinePlace;
 use crate::reading::captions;
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::key_path;
 use crate::reading::words;
 use crate::scene::file::RunFile;
 use crate::scene::{ALL_BODIES, Run, SceneBody};
@@ -57,100 +57,99 @@ fn together<'a>(all: impl Iterator<Item = &'a SceneBody> + Clone) -> (Arc<Assemb
 /// The resolved parts that runs consist of.
 #[derive(Clone, Copy)]
 pub(super) struct Resolved<'a> {
+    pub(super) scene: &'a Typed<'a>,
     /// The bodies and models of each run.
     pub(super) choices: &'a [Option<Choice<'a>>],
     /// The bodies of the scene.
     pub(super) bodies: &'a [SceneBody],
-    pub(super) grips: &'a [SceneGrip],
+    pub(super) grips: &'a [SceneGrip<'a>],
     pub(super) loads: &'a [SceneLoad],
 }
 
 impl Resolved<'_> {
+    /// The runs, and the own bodies of recordings, or `None` if a part that they need has a mistake.
+    pub(super) fn runs(self, recordings: Vec<Option<ReadRecording<'_>>>) -> Option<(Vec<Run>, Vec<SceneBody>)> {
+        // T depends on all models: without one of them, steps would be reported wrongly.
+        let (found, own) = self.without_steps(recordings)?;
+        let steps = Steps::new(self.scene, &found)?;
+        let run =
+            |(at, (typed, run)): (usize, (&Option<RunFile>, Run))| self.with_step(at, (typed.as_ref()?, run), &steps);
+        let runs = self.scene.file.run.iter().zip(found).enumerate().map(run).collect::<Option<_>>()?;
+        Some((runs, own))
+    }
+
     /// The runs without their steps, and the own bodies of recordings; `None` after a mistake in a model or a recording.
-    fn without_steps(
-        self,
-        runs: &[Option<RunFile>],
-        recordings: Vec<Option<ReadRecording>>,
-        report: &mut Collector<'_>,
-    ) -> Option<(Vec<Run>, Vec<SceneBody>)> {
+    fn without_steps(self, recordings: Vec<Option<ReadRecording<'_>>>) -> Option<(Vec<Run>, Vec<SceneBody>)> {
         let mut own = Vec::new();
         // Runs of the same bodies share them.
         let mut known: BTreeMap<&[usize], (Arc<Assembly>, State)> = BTreeMap::new();
-        let mut resolved = |at: usize, typed: &Option<RunFile>, read: Option<ReadRecording>| {
+        let mut resolved = |at: usize, typed: &Option<RunFile>, read: Option<ReadRecording<'_>>| {
             let (Choice { of, models }, typed) = self.choices[at].as_ref().zip(typed.as_ref())?;
             let all = || together(of.iter().map(|&body| &self.bodies[body]));
             let (bodies, initial) = known.entry(of).or_insert_with(all).clone();
             if typed.states.is_none() {
-                let models = self.models(of, models, report)?;
+                let models = self.models(of, models)?;
                 let (grips, grip_names) = self.grips.iter().flat_map(|grip| grip.in_run(of, &bodies)).unzip();
                 let loads = self.loads.iter().flat_map(|load| load.in_run(of, &bodies)).map(Arc::new).collect();
                 return Some(Run { models, grips, grip_names, loads, ..bare(typed, of.clone(), (bodies, initial)) });
             }
-            let (recorded, shown) = read?.shown(typed, bodies.whole(), report)?;
+            let (recorded, start, shown) = read?.shown(typed, bodies.whole())?;
             let run = match shown {
-                Shown::Bodies(start) => bare(typed, of.clone(), (bodies, *start)),
-                Shown::Own(body) => {
+                None => bare(typed, of.clone(), (bodies, start)),
+                Some(body) => {
                     if self.bodies.iter().any(|other| other.name == body.name) || body.name == ALL_BODIES {
                         let name = words::quoted(&typed.name);
                         let message =
                             format!("{name} shows a body of its own, which has this name, too, as has another");
-                        report.at(&key_path!["run", at, "name"], message, "give the run another name");
+                        self.scene.report.at(&key_path!["run", at, "name"], message, "give the run another name");
                         return None;
                     }
-                    let together = together(std::iter::once(&*body));
-                    own.push(*body);
+                    let together = together(std::iter::once(&body));
+                    own.push(body);
                     bare(typed, vec![self.bodies.len() + own.len() - 1], together)
                 }
             };
             Some(Run { recording: Some(recorded), ..run })
         };
         // Mistakes of all runs are reported.
-        let all: Vec<_> = (0..).zip(runs).zip(recordings).map(|((at, run), read)| resolved(at, run, read)).collect();
+        let all: Vec<_> =
+            (0..).zip(&self.scene.file.run).zip(recordings).map(|((at, run), read)| resolved(at, run, read)).collect();
         Some((all.into_iter().collect::<Option<_>>()?, own))
     }
 
     /// The models of some bodies, or `None` after reporting all that do not fit.
-    fn models(
-        self,
-        of: &[usize],
-        typed: &[TypedModel<'_>],
-        report: &mut Collector<'_>,
-    ) -> Option<Vec<Arc<dyn ElasticModel>>> {
+    fn models(self, of: &[usize], typed: &[TypedModel<'_>]) -> Option<Vec<Arc<dyn ElasticModel>>> {
         let resolved = of.iter().zip(typed).map(|(&at, typed)| {
             let body = &self.bodies[at];
             let misfit = |Misfit { key, message }| {
                 let of = if of.len() > 1 { format!("{}: ", body.in_words()) } else { String::new() };
-                report.at(&key_path![typed.path; key], of + &message, None);
+                typed.here.to(key).wrong(of + &message, None);
             };
             typed.model.resolve(&body.body, body.springs.as_deref()).map_err(misfit).ok()
         });
         let resolved: Vec<_> = resolved.collect();
         let models = resolved.into_iter().collect::<Option<Vec<_>>>()?;
-        warn_without_effect(of.iter().map(|&at| &self.bodies[at].body), typed, report);
+        warn_without_effect(of.iter().map(|&at| &self.bodies[at].body), typed);
         Some(models)
     }
 
     /// A run with its step; `None` after reporting a mistake.
-    fn with_step(
-        self,
-        at: usize,
-        (typed, run): (&RunFile, Run),
-        steps: &Steps<'_>,
-        report: &mut Collector<'_>,
-    ) -> Option<Run> {
+    fn with_step(self, at: usize, (typed, run): (&RunFile, Run), steps: &Steps<'_>) -> Option<Run> {
+        let here = self.scene.report.here(&key_path!["run", at]);
         let integrator = steps.integrator(typed);
-        let (step, tolerance) = steps.of(at, typed, run.recording.as_deref(), report)?;
+        let (step, tolerance) = steps.of(at, typed, run.recording.as_deref())?;
         let parts = run.models_and_bodies();
-        let refusals = parts.map(|(model, body)| integrator.refusal(model, body, steps.mass_damping)).enumerate();
+        let refusals =
+            parts.map(|(model, body)| integrator.refusal(model, body, self.scene.file.mass_damping())).enumerate();
         if let Some((body, reason)) = refusals.into_iter().find_map(|(body, reason)| Some((body, reason?))) {
             let name = words::quoted(&captions::typed(&integrator));
             // The integrator of the scene suits other runs.
             match (typed.integrator, &self.choices[at]) {
                 (None, Some(choice)) => {
                     let message = format!("{name}, which is `time.integrator`, {reason}");
-                    report.at(&choice.models[body].path, message, "or give this run an `integrator` of its own");
+                    choice.models[body].here.wrong(message, "or give this run an `integrator` of its own");
                 }
-                _ => report.at(&key_path!["run", at, "integrator"], format!("{name} {reason}"), None),
+                _ => here.to("integrator").wrong(format!("{name} {reason}"), None),
             }
             return None;
         }
@@ -161,9 +160,9 @@ impl Resolved<'_> {
             let slow = slow.filter(|_| run.of.len() > 1).and_then(|slow| self.bodies.get(run.of[slow]));
             let of = slow.map_or(String::new(), |body| format!(" of {}", body.in_words()));
             let message = format!(
-                "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.kind` or `model.rotation`{of} has no vectorised steps"
+                "`{here}.kernel` is \"fast\", but this `integrator`, `model.kind` or `model.rotation`{of} has no vectorised steps"
             );
-            report.at(&key_path!["run", at, "kernel"], message, "remove it, or write \"reference\"");
+            here.to("kernel").wrong(message, "remove it, or write \"reference\"");
             return None;
         }
         Some(Run { integrator, step, tolerance, kernel, ..run })
@@ -171,41 +170,12 @@ impl Resolved<'_> {
 }
 
 /// Warns of parameters that have no effect on any of the bodies of their model.
-fn warn_without_effect<'a>(
-    bodies: impl Iterator<Item = &'a Arc<Body>>,
-    typed: &[TypedModel<'_>],
-    report: &mut Collector<'_>,
-) {
+fn warn_without_effect<'a>(bodies: impl Iterator<Item = &'a Arc<Body>>, typed: &[TypedModel<'_>]) {
     let parts: Vec<_> = bodies.zip(typed).collect();
-    for models in parts.chunk_by(|(_, one), (_, other)| one.path == other.path) {
+    for models in parts.chunk_by(|(_, one), (_, other)| one.here.path() == other.here.path()) {
         let idle = models.iter().map(|(body, typed)| typed.model.without_effect(body)).collect::<Option<Vec<_>>>();
         if let Some(Misfit { key, message }) = idle.and_then(|idle| idle.into_iter().next()) {
-            report.warn(&key_path![models[0].1.path; key], message, None);
+            models[0].1.here.to(key).warn(message, None);
         }
     }
-}
-
-/// Reports names of runs that are not unique, or cannot be used in files.
-pub(super) fn check_names<'a>(runs: &'a [Option<RunFile>], report: &mut Collector<'_>) {
-    let name = |run: &'a Option<RunFile>| Some(run.as_ref()?.name.as_str());
-    let named = runs.iter().enumerate().map(|(at, run)| (key_path!["run", at].to_vec(), name(run)));
-    choice::check_names(["run", "runs"], named, report);
-}
-
-/// The runs, and the own bodies of recordings, or `None` if a part that they need has a mistake.
-pub(super) fn resolve(
-    scene: &Typed<'_>,
-    recordings: Vec<Option<ReadRecording>>,
-    resolved: Resolved<'_>,
-    report: &mut Collector<'_>,
-) -> Option<(Vec<Run>, Vec<SceneBody>)> {
-    let runs = &scene.file.run;
-    // T depends on all models: without one of them, steps would be reported wrongly.
-    let (found, own) = resolved.without_steps(runs, recordings, report)?;
-    let steps = Steps::new(scene.file, &found, report)?;
-    let run = |(at, (typed, run)): (usize, (&Option<RunFile>, Run))| {
-        resolved.with_step(at, (typed.as_ref()?, run), &steps, report)
-    };
-    let runs = runs.iter().zip(found).enumerate().map(run).collect::<Option<_>>()?;
-    Some((runs, own))
 }

@@ -1,9 +1,10 @@
 //! The time steps of runs.
 
+use super::Typed;
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::key_path;
 use crate::reading::words;
-use crate::scene::file::{RunFile, SceneFile, StepFile, TimeFile};
+use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
 use crate::scene::{Recorded, Run};
 use crate::sim::Integrator;
@@ -17,10 +18,8 @@ const STEPS_OF_FRAME: f64 = 1024.0;
 
 /// What the time steps of all runs depend on.
 pub(super) struct Steps<'a> {
+    pub(super) scene: &'a Typed<'a>,
     pub(super) time: &'a TimeFile,
-    runs: &'a [Option<RunFile>],
-    /// Damping in proportion to masses (1/s).
-    pub(super) mass_damping: f64,
     /// The cycle T of all runs (s).
     cycle: f64,
     /// The largest step for `step = "auto"` of each run (s), and the run that limits it.
@@ -29,12 +28,12 @@ pub(super) struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// The steps of these runs.
-    pub(super) fn new(file: &'a SceneFile, found: &[Run], report: &mut Collector<'_>) -> Option<Self> {
-        let (runs, time, mass_damping) = (&file.run, file.time.as_ref()?, file.mass_damping());
+    pub(super) fn new(scene: &'a Typed<'a>, found: &[Run]) -> Option<Self> {
         let cycle = found.iter().map(Run::shortest_period).fold(f64::INFINITY, f64::min);
-        let own = own_limits(runs, time, mass_damping, found);
-        warn_of_held_steps(runs, time, found, &own, report);
-        Some(Self { time, runs, mass_damping, cycle, limits: limits(own, &sharing(runs, time)) })
+        let steps = Self { scene, time: scene.file.time.as_ref()?, cycle, limits: Vec::new() };
+        let own = steps.own_limits(found);
+        steps.warn_of_held_steps(found, &own);
+        Some(Self { limits: limits(own, &steps.sharing()), ..steps })
     }
 
     /// The integrator of a run.
@@ -43,17 +42,10 @@ impl<'a> Steps<'a> {
     }
 
     /// The time step of a run (s), and its tolerance if its integrator chooses its steps; `None` after reporting a mistake.
-    pub(super) fn of(
-        &self,
-        at: usize,
-        run: &RunFile,
-        recording: Option<&Recorded>,
-        report: &mut Collector<'_>,
-    ) -> Option<(f64, Option<f64>)> {
-        let (time, integrator) = (self.time, self.integrator(run));
-        if let Some((path, message, help)) = misplaced(at, run, time, integrator).filter(|_| recording.is_none()) {
-            report.at(&path, message, help);
-            return None;
+    pub(super) fn of(&self, at: usize, run: &RunFile, recording: Option<&Recorded>) -> Option<(f64, Option<f64>)> {
+        let (time, integrator, report) = (self.time, self.integrator(run), self.scene.report);
+        if recording.is_none() {
+            self.check_use(at, run, integrator)?;
         }
         let frame = 1.0 / time.frames_per_second;
         let recorded = recording.map(|recording| recording.step.unwrap_or(frame / STEPS_OF_FRAME));
@@ -71,7 +63,7 @@ impl<'a> Steps<'a> {
         };
         let Some(step) = found else {
             let (limit, of) = self.limits[at];
-            let of = self.runs[of].as_ref()?;
+            let of = self.scene.file.run[of].as_ref()?;
             let (message, help) = no_limit(of, self.integrator(of), limit);
             report.at(path, message, help);
             return None;
@@ -81,6 +73,30 @@ impl<'a> Steps<'a> {
             return None;
         }
         Some((step, tolerance))
+    }
+
+    /// Reports a `step` with an integrator that chooses its own steps, or a tolerance with another one.
+    fn check_use(&self, at: usize, run: &RunFile, integrator: Integrator) -> Option<()> {
+        let is_adaptive = integrator.is_adaptive();
+        let (key, of_run, of_scene) = match is_adaptive {
+            true => ("step", run.step.is_some(), self.time.step.is_some()),
+            false => ("tolerance", run.tolerance.is_some(), self.time.tolerance.is_some()),
+        };
+        if !of_run && (!of_scene || run.integrator.is_some()) {
+            return Some(());
+        }
+        let place = if of_run { &key_path!["run", at, key][..] } else { &key_path!["time", key] };
+        let name = words::quoted(&typed(&integrator));
+        if is_adaptive {
+            let help = "give `tolerance` in place of `step`, such as 1e-6";
+            self.scene.report.at(place, format!("{name} chooses its own steps"), help);
+        } else {
+            let has_step = run.step.is_some() || self.time.step.is_some();
+            let remedy = if has_step { "remove `tolerance`" } else { "give `step` in its place" };
+            let help = format!("{remedy}, or write `integrator = \"dormand-prince\"`");
+            self.scene.report.at(place, format!("{name} has fixed steps and no tolerance"), help);
+        }
+        None
     }
 
     /// Why a step (s) cannot be taken, and the remedy.
@@ -100,31 +116,48 @@ impl<'a> Steps<'a> {
             (format!("the time step of {name} is {step} s, {scene}"), help)
         })
     }
-}
 
-/// The place, message and remedy for a `step` with an integrator that chooses its own steps, or a tolerance with
-/// another integrator.
-fn misplaced(
-    at: usize,
-    run: &RunFile,
-    time: &TimeFile,
-    integrator: Integrator,
-) -> Option<(Vec<PathPart<'static>>, String, String)> {
-    let own = |key| key_path!["run", at, key].to_vec();
-    let common = |key| key_path!["time", key].to_vec();
-    let name = words::quoted(&typed(&integrator));
-    if integrator.is_adaptive() {
-        let path = if run.step.is_some() { own("step") } else { common("step") };
-        let is_typed = run.step.is_some() || time.step.is_some() && run.integrator.is_none();
-        let message = format!("{name} chooses its own steps");
-        return is_typed.then(|| (path, message, "give `tolerance` in place of `step`, such as 1e-6".into()));
+    /// The runs that share `step = "auto"` of the scene.
+    fn sharing(&self) -> Vec<usize> {
+        let shares = |run: &RunFile| run.step.is_none() && is_auto(&self.time.step);
+        let runs = (0..).zip(&self.scene.file.run);
+        runs.filter(|(_, run)| run.as_ref().is_some_and(shares)).map(|(at, _)| at).collect()
     }
-    let path = if run.tolerance.is_some() { own("tolerance") } else { common("tolerance") };
-    let is_typed = run.tolerance.is_some() || time.tolerance.is_some() && run.integrator.is_none();
-    let message = format!("{name} has fixed steps and no tolerance");
-    let has_step = run.step.is_some() || time.step.is_some();
-    let remedy = if has_step { "remove `tolerance`" } else { "give `step` in its place" };
-    is_typed.then(|| (path, message, format!("{remedy}, or write `integrator = \"dormand-prince\"`")))
+
+    /// The largest step (s) for each run with `step = "auto"`, infinite for others: the largest stable one, or for a model that moves its
+    /// nodes itself the one that is taken.
+    fn own_limits(&self, found: &[Run]) -> Vec<f64> {
+        let (sharing, mass_damping) = (self.sharing(), self.scene.file.mass_damping());
+        let limit = |(at, (run, found)): (usize, (&Option<RunFile>, &Run))| {
+            let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || sharing.contains(&at)) else {
+                return f64::INFINITY;
+            };
+            let Run { bodies, models, grips, .. } = found;
+            let restraint = Restraint { grips, duration: self.time.duration, mass_damping };
+            let each = Stability::of_each(bodies, models, self.integrator(run), restraint);
+            let largest = Stability::of_all(&each).largest;
+            if is_projected(found) { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
+        };
+        self.scene.file.run.iter().zip(found).enumerate().map(limit).collect()
+    }
+
+    /// Warns of a model that moves its nodes itself, if its short steps are those of all runs that share `step = "auto"` of the scene.
+    fn warn_of_held_steps(&self, found: &[Run], own: &[f64]) {
+        let (holding, others): (Vec<usize>, Vec<usize>) =
+            self.sharing().into_iter().partition(|&at| is_projected(&found[at]));
+        let step = |of: &[usize]| automatic(of.iter().map(|&at| own[at]).fold(f64::INFINITY, f64::min), self.time);
+        if let (Some(held), Some(free)) = (step(&holding), step(&others))
+            && held < free
+        {
+            let names: Vec<_> = holding.iter().map(|&at| &found[at].name).collect();
+            let names = words::list(&names, "and", words::quoted);
+            let [held, free] = [held, free].map(words::short);
+            let message =
+                format!("all runs take steps of {held} s, because of {names}; the others would take {free} s");
+            let help = format!("write `step = \"auto\"` for {names} alone, unless all runs need the same step");
+            self.scene.report.warn(&key_path!["time", "step"], message, help);
+        }
+    }
 }
 
 /// Whether a model of a run moves its nodes itself.
@@ -137,30 +170,6 @@ fn is_auto(step: &Option<StepFile>) -> bool {
     matches!(step, Some(StepFile::Named(NamedStep::Auto)))
 }
 
-/// The runs that share `step = "auto"` of the scene.
-fn sharing(runs: &[Option<RunFile>], time: &TimeFile) -> Vec<usize> {
-    let shares = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
-    (0..runs.len()).filter(|&at| runs[at].as_ref().is_some_and(shares)).collect()
-}
-
-/// The largest step (s) for each run with `step = "auto"`, infinite for others: the largest stable one, or for a model that moves its
-/// nodes itself the one that is taken.
-fn own_limits(runs: &[Option<RunFile>], time: &TimeFile, mass_damping: f64, found: &[Run]) -> Vec<f64> {
-    let sharing = sharing(runs, time);
-    let limit = |(at, (run, found)): (usize, (&Option<RunFile>, &Run))| {
-        let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || sharing.contains(&at)) else {
-            return f64::INFINITY;
-        };
-        let integrator = run.integrator.unwrap_or(time.integrator);
-        let Run { bodies, models, grips, .. } = found;
-        let each =
-            Stability::of_each(bodies, models, integrator, Restraint { grips, duration: time.duration, mass_damping });
-        let largest = Stability::of_all(&each).largest;
-        if is_projected(found) { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
-    };
-    runs.iter().zip(found).enumerate().map(limit).collect()
-}
-
 /// The largest step (s) for each run, and the run that limits it: the run itself, or among the runs that share the scene's step the one
 /// with the least.
 fn limits(own: Vec<f64>, sharing: &[usize]) -> Vec<(f64, usize)> {
@@ -168,29 +177,6 @@ fn limits(own: Vec<f64>, sharing: &[usize]) -> Vec<(f64, usize)> {
     let least = sharing.iter().map(|&at| limits[at]).min_by(|one, other| one.0.total_cmp(&other.0));
     sharing.iter().zip(least.into_iter().cycle()).for_each(|(&at, least)| limits[at] = least);
     limits
-}
-
-/// Warns of a model that moves its nodes itself, if its short steps are those of all runs that share `step = "auto"` of the scene.
-fn warn_of_held_steps(
-    runs: &[Option<RunFile>],
-    time: &TimeFile,
-    found: &[Run],
-    own: &[f64],
-    report: &mut Collector<'_>,
-) {
-    let (holding, others): (Vec<usize>, Vec<usize>) =
-        sharing(runs, time).into_iter().partition(|&at| is_projected(&found[at]));
-    let step = |of: &[usize]| automatic(of.iter().map(|&at| own[at]).fold(f64::INFINITY, f64::min), time);
-    if let (Some(held), Some(free)) = (step(&holding), step(&others))
-        && held < free
-    {
-        let names: Vec<_> = holding.iter().filter_map(|&at| Some(&runs[at].as_ref()?.name)).collect();
-        let names = words::list(&names, "and", words::quoted);
-        let [held, free] = [held, free].map(words::short);
-        let message = format!("all runs take steps of {held} s, because of {names}; the others would take {free} s");
-        let help = format!("write `step = \"auto\"` for {names} alone, unless all runs need the same step");
-        report.warn(&key_path!["time", "step"], message, help);
-    }
 }
 
 /// The longest step (s) that divides the time between two frames into a whole number of steps, and is at most the

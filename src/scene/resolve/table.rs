@@ -1,8 +1,8 @@
 //! The table of a body in a scene, and its nodes and elements before the body is made.
 
+use super::elements;
 use super::lists::Lists;
-use super::{KeyPath, elements};
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Here;
 use crate::scene::SceneBody;
 use crate::scene::file::BodyFile;
 use crate::scene::generate::Generator;
@@ -16,19 +16,14 @@ use std::sync::Arc;
 pub(super) struct BodyTable<'a> {
     pub(super) file: &'a BodyFile,
     /// Its place in the scene.
-    pub(super) place: KeyPath,
+    pub(super) here: Here<'a>,
     /// Whether keys were left out because of mistakes, or lists have some.
     pub(super) flawed: bool,
 }
 
-impl BodyTable<'_> {
-    /// The place of a key.
-    pub(super) fn at(&self, key: &'static str) -> KeyPath {
-        key_path![self.place; key]
-    }
-
+impl<'a> BodyTable<'a> {
     /// The name of its mesh file.
-    pub(super) fn mesh(&self) -> &str {
+    pub(super) fn mesh(&self) -> &'a str {
         self.file.mesh.as_deref().unwrap_or_default()
     }
 
@@ -38,8 +33,8 @@ impl BodyTable<'_> {
     }
 
     /// A body, or `None` after reporting a mistake that the checks of its table have not found.
-    pub(super) fn sound(&self, made: Result<Body, BodyError>, report: &mut Collector<'_>) -> Option<Body> {
-        made.map_err(|error| report.at(&self.place, error.to_string(), "correct its nodes, elements or masses")).ok()
+    pub(super) fn sound(&self, made: Result<Body, BodyError>) -> Option<Body> {
+        made.map_err(|error| self.here.wrong(error.to_string(), "correct its nodes, elements or masses")).ok()
     }
 
     /// The resolved body in an initial state, whose edges have a length (m), or else their mean one.
@@ -64,7 +59,7 @@ impl BodyTable<'_> {
 pub(super) enum Content<'a> {
     Generated(Generator<'a>),
     /// Listed ones, and groups of nodes.
-    Listed(Box<Lists>, Vec<Group>),
+    Listed(Box<Lists<'a>>, Vec<Group>),
     /// A surface with the elements that fill it, and the length of their edges (m).
     Filled(Box<Filled>, f64),
 }

@@ -1,7 +1,7 @@
 //! Scenes that end when all runs are at rest.
 
 use super::Typed;
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::key_path;
 use crate::reading::words::{list, quoted, short};
 use crate::scene::file::EndFile;
 use crate::scene::{AtRest, Scene};
@@ -27,9 +27,9 @@ enum Restless {
 }
 
 /// Ends the scene at the first frame at which all runs are at rest, if it asks for it: simulates them until then.
-pub(super) fn end(typed: &Typed<'_>, scene: &mut Scene, report: &mut Collector<'_>) {
+pub(super) fn end(typed: &Typed<'_>, scene: &mut Scene) {
     let asked = typed.file.time.as_ref().and_then(|time| time.until);
-    let (Some(EndFile::Rest), 0) = (asked, report.total()) else { return };
+    let (Some(EndFile::Rest), 0) = (asked, typed.report.total()) else { return };
     let found: Vec<_> = (0..scene.runs.len()).into_par_iter().map(|run| rest(scene, run)).collect();
     if found.iter().all(Result::is_ok) {
         let last = found.iter().flatten().map(|rest| rest.frame).max().unwrap_or(0);
@@ -45,15 +45,15 @@ pub(super) fn end(typed: &Typed<'_>, scene: &mut Scene, report: &mut Collector<'
             .collect();
         (!names.is_empty()).then(|| (list(&names, "and", quoted), names.len() == 1))
     };
-    let path = key_path!["time", "until"];
+    let here = typed.report.here(&key_path!["time", "until"]);
     if let Some((names, is_one)) = of(true) {
         let message = format!("{names} diverge{} before rest", if is_one { "s" } else { "" });
-        report.warn(&path, message, "take shorter steps");
+        here.warn(message, "take shorter steps");
     }
     if let Some((names, is_one)) = of(false) {
         let (is, duration) = (if is_one { "is" } else { "are" }, short(scene.duration));
         let help = "make `duration` longer, or give more damping, such as `mass_damping = 2`";
-        report.warn(&path, format!("{names} {is} not at rest after {duration} s"), help);
+        here.warn(format!("{names} {is} not at rest after {duration} s"), help);
     }
 }
 

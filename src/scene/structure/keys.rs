@@ -9,7 +9,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-impl Walk<'_, '_, '_> {
+impl Walk<'_, '_> {
     /// Checks the keys that a table requires, and keys that need or exclude each other.
     pub(super) fn table_rules(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
         let has = |name: &str| table.contains_key(name);

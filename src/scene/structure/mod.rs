@@ -30,7 +30,7 @@ pub(super) struct Checked {
 }
 
 /// Checks a whole file.
-pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_>) -> Checked {
+pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &Collector<'_>) -> Checked {
     let mut walk = Walk { schema, report, path: Vec::new() };
     walk.table_rules(schema, root, 0..0);
     let (mut parts, mut flawed) = (Map::new(), BTreeSet::new());
@@ -65,14 +65,14 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_
     Checked { parts, flawed }
 }
 
-struct Walk<'r, 't, 'p> {
+struct Walk<'r, 'p> {
     /// The schema of the whole file.
     schema: &'r Json,
-    report: &'r mut Collector<'t>,
+    report: &'r Collector<'r>,
     path: Vec<PathPart<'p>>,
 }
 
-impl<'p> Walk<'_, '_, 'p> {
+impl<'p> Walk<'_, 'p> {
     fn mistake(&mut self, span: Range<usize>, message: String, help: Option<String>) {
         self.report.at_span(span, &self.path, message, help);
     }

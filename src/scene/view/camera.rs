@@ -14,7 +14,7 @@ const DISTANCE: f64 = 8.5;
 
 impl CameraFile {
     /// The camera of a scene, or `None` after a mistake in its target.
-    pub(super) fn resolve(&self, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Camera> {
+    pub(super) fn resolve(&self, scene: &Subject<'_>, report: &Collector<'_>) -> Option<Camera> {
         let dimension = scene.dimension();
         let is_flat = dimension == Dimension::Plane;
         for (key, _) in [("azimuth", self.azimuth), ("elevation", self.elevation)]
@@ -28,7 +28,7 @@ impl CameraFile {
             |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
         let (low, high) = scene.start();
         let target = match &self.target {
-            Some(target) => vector(target, dimension, &key_path!["view", "camera", "target"], report)?,
+            Some(target) => vector(target, dimension, &report.here(&key_path!["view", "camera", "target"]))?,
             None => low.midpoint(high),
         };
         // Bodies that start as one point have the size of their rest shapes.

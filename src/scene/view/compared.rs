@@ -2,7 +2,7 @@
 
 use super::subject::Subject;
 use crate::look::{Ghost, Traced};
-use crate::reading::collector::{Collector, PathPart};
+use crate::reading::collector::{Collector, Here, key_path};
 use crate::reading::words::{list, nearest, quoted, short};
 use crate::scene::Run;
 
@@ -10,47 +10,41 @@ use crate::scene::Run;
 const REST: &str = "rest";
 
 /// The outline over each body; `None` also after a mistake.
-pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Ghost> {
-    let path = [PathPart::Key("view"), PathPart::Key("ghost")];
+pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &Collector<'_>) -> Option<Ghost> {
+    let here = report.here(&key_path!["view", "ghost"]);
     let run = scene.runs.iter().position(|known| known.name == name);
     match run {
         Some(at) if name == REST => {
             let message = format!("\"{REST}\" means the rest shape, but `run[{at}]` has this name, too");
-            report.at(&path, message, "give the run another name".to_owned());
+            here.wrong(message, "give the run another name");
             None
         }
         None if name == REST => Some(Ghost::Rest),
-        _ => self::run(name, &[REST], &path, scene, report).map(Ghost::Run),
+        _ => self::run(name, &[REST], &here, scene).map(Ghost::Run),
     }
 }
 
 /// A run whose states are compared with those of all others. `more` are other words in its place.
-pub(super) fn run(
-    name: &str,
-    more: &[&str],
-    path: &[PathPart<'_>],
-    scene: &Subject<'_>,
-    report: &mut Collector<'_>,
-) -> Option<usize> {
+pub(super) fn run(name: &str, more: &[&str], here: &Here<'_>, scene: &Subject<'_>) -> Option<usize> {
     let run = scene.runs.iter().position(|known| known.name == name);
-    let run = run.or_else(|| unknown(name, more, path, scene, report))?;
+    let run = run.or_else(|| unknown(name, more, here, scene))?;
     let one = &scene.runs[run];
     if let Some(other) = scene.runs.iter().find(|other| other.of != one.of) {
-        other_bodies([one, other], path, report);
+        other_bodies([one, other], here);
     } else if let Some(other) = scene.runs.iter().find(|other| have_other_steps(one, other)) {
-        other_steps([one, other], path, report);
+        other_steps([one, other], here);
     }
     Some(run)
 }
 
 /// Reports paths that are listed twice, and nodes that not all runs have.
-pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &mut Collector<'_>) {
+pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &Collector<'_>) {
     let nodes = scene.nodes();
     let (least, most) = (nodes.iter().min().copied().unwrap_or(0), nodes.iter().max().copied().unwrap_or(0));
     for (at, path) in paths.iter().enumerate() {
-        let place = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
+        let here = report.here(&key_path!["view", "paths", at]);
         if paths[..at].contains(path) {
-            report.at(&place, "this path is listed a second time".to_owned(), "remove it".to_owned());
+            here.wrong("this path is listed a second time", "remove it");
         }
         if let Traced::Node(node) = *path
             && node as usize >= least
@@ -61,19 +55,13 @@ pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &mut Co
                 _ if scene.bodies.len() == 1 => "the body".to_owned(),
                 _ => "each run".to_owned(),
             };
-            report.at(&place, format!("there is no node {node}; {who} has nodes 0 to {last}"), None);
+            here.wrong(format!("there is no node {node}; {who} has nodes 0 to {last}"), None);
         }
     }
 }
 
 /// Reports an unknown run, unless there are mistakes in the runs themselves.
-fn unknown<T>(
-    name: &str,
-    more: &[&str],
-    path: &[PathPart<'_>],
-    scene: &Subject<'_>,
-    report: &mut Collector<'_>,
-) -> Option<T> {
+fn unknown<T>(name: &str, more: &[&str], here: &Here<'_>, scene: &Subject<'_>) -> Option<T> {
     if scene.runs.is_empty() {
         return None;
     }
@@ -82,15 +70,15 @@ fn unknown<T>(
         Some(name) => format!("did you mean {}?", quoted(name)),
         None => format!("expected {}", list(&known, "or", quoted)),
     };
-    report.at(path, format!("there is no run {}", quoted(name)), help);
+    here.wrong(format!("there is no run {}", quoted(name)), help);
     None
 }
 
 /// Reports runs with different bodies.
-fn other_bodies(runs: [&Run; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
+fn other_bodies(runs: [&Run; 2], here: &Here<'_>) {
     let [one, other] = runs.map(|run| quoted(&run.name));
     let message = format!("{one} and {other} have different bodies, so their nodes cannot be compared");
-    report.at(path, message, "give all runs of the scene the same bodies, or compare none".to_owned());
+    here.wrong(message, "give all runs of the scene the same bodies, or compare none");
 }
 
 /// Whether two runs are simulated with different steps. A recording is compared with the moments nearest to its own.
@@ -99,7 +87,7 @@ fn have_other_steps(one: &Run, other: &Run) -> bool {
 }
 
 /// Reports runs with different steps: their frames show different moments.
-fn other_steps([one, other]: [&Run; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
+fn other_steps([one, other]: [&Run; 2], here: &Here<'_>) {
     let message = format!(
         "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",
         quoted(&one.name),
@@ -107,5 +95,5 @@ fn other_steps([one, other]: [&Run; 2], path: &[PathPart<'_>], report: &mut Coll
         quoted(&other.name),
         short(other.step)
     );
-    report.at(path, message, "give both runs the same `step`".to_owned());
+    here.wrong(message, "give both runs the same `step`");
 }

@@ -8,7 +8,7 @@ use crate::look::file::{ColourFile, PanelsFile};
 use crate::look::print::{SizeFile, TextScaleFile, unit};
 use crate::look::typed::TypedColour;
 use crate::look::{CameraFile, ColourScale, FontFiles, Palette, View, Visible};
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::{Collector, Here, key_path};
 use crate::sim::Field;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
@@ -21,14 +21,14 @@ const LEAST_SIDE: u32 = 16;
 pub(super) type TypedView = Map<String, Json>;
 
 /// A value as typed, if there is one.
-fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &mut Collector<'_>) -> Option<T> {
+fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &Collector<'_>) -> Option<T> {
     let read = T::deserialize(typed.get(key)?);
     // The structure of the value is right, so an error is unexpected.
     read.map_err(|error| report.at(&key_path!["view", key], error.to_string(), None)).ok()
 }
 
 /// Sets a field to the typed value, if there is one.
-fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &mut Collector<'_>) {
+fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &Collector<'_>) {
     if let Some(value) = get(typed, key, report) {
         *place = value;
     }
@@ -40,13 +40,13 @@ impl View {
         typed: &TypedView,
         scene: &Subject<'_>,
         font: FontFiles,
-        report: &mut Collector<'_>,
+        report: &Collector<'_>,
     ) -> Option<Self> {
         let (panels, known) = (scene.runs.len(), report.total());
         let mut view = Self { side: scene.side(), has_cells: scene.has_cells(), ..Self::default() };
         view.camera = get::<CameraFile>(typed, "camera", report).unwrap_or_default().resolve(scene, report)?;
         let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
-        (view.size, view.print) = size.resolve(LEAST_SIDE, &key_path!["view", "size"], report)?;
+        (view.size, view.print) = size.resolve(LEAST_SIDE, &report.here(&key_path!["view", "size"]))?;
         view.columns = get(typed, "panels", report).map(|arranged| match arranged {
             PanelsFile::Columns(columns) => columns as usize,
             PanelsFile::Row => panels.max(1),
@@ -66,8 +66,8 @@ impl View {
         }
         let panel = [view.size[0] / usual as u32, view.size[1] / panels.div_ceil(usual).max(1) as u32];
         let unit = unit(view.size, panel);
-        view.look.text_scale =
-            text_scale.resolve(view.print.as_ref(), unit, &key_path!["view", "text_scale"], report)?;
+        let here = report.here(&key_path!["view", "text_scale"]);
+        view.look.text_scale = text_scale.resolve(view.print.as_ref(), unit, &here)?;
         view.look.background = get::<TypedColour>(typed, "background", report).map(|colour| colour.0);
         set(&mut view.look.theme, typed, "theme", report);
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
@@ -101,35 +101,35 @@ pub(super) fn colour(
     typed: &ColourFile,
     scenes: &[Subject<'_>],
     table: &'static str,
-    report: &mut Collector<'_>,
+    report: &Collector<'_>,
 ) -> Option<Vec<ColourScale>> {
+    let here = report.here(&key_path![table, "colour"]);
     let range = match typed.range {
-        Some(range) => rising(range, &key_path![table, "colour", "range"], report)?,
+        Some(range) => rising(range, &here.to("range"))?,
         None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
     let mut runs = scenes.iter().flat_map(|scene| scene.runs).peekable();
     if typed.by == Field::ElasticEnergy && runs.peek().is_some() && runs.all(|run| run.models.is_empty()) {
-        let message = format!("`{table}.colour.by` is \"elastic-energy\", which no run has");
-        let help = "recordings have none; colour by another field, such as \"strain\"".to_owned();
-        report.at(&key_path![table, "colour", "by"], message, help);
+        let message = format!("`{here}.by` is \"elastic-energy\", which no run has");
+        here.to("by").wrong(message, "recordings have none; colour by another field, such as \"strain\"");
         return None;
     }
-    let (path, is_compared) = (key_path![table, "colour", "to"], typed.by == Field::Distance);
+    let (to, is_compared) = (here.to("to"), typed.by == Field::Distance);
     match &typed.to {
         None if is_compared => {
-            let message = format!("`{table}.colour` has no `to`, the run to which the distance is measured");
-            report.at(&path[..2], message, "name a run, such as `to = \"Mass-spring\"`".to_owned());
+            let message = format!("`{here}` has no `to`, the run to which the distance is measured");
+            here.wrong(message, "name a run, such as `to = \"Mass-spring\"`");
             return None;
         }
         Some(_) if !is_compared => {
-            let message = format!("`{table}.colour.to` is given, but only `by = \"distance\"` compares runs");
-            report.at_key(&path, message, "remove `to`".to_owned());
+            let message = format!("`{to}` is given, but only `by = \"distance\"` compares runs");
+            to.wrong_key(message, "remove `to`");
             return None;
         }
         _ => {}
     }
     let one = |scene| {
-        let to = typed.to.as_ref().map(|name| compared::run(name, &[], &path, scene, report));
+        let to = typed.to.as_ref().map(|name| compared::run(name, &[], &to, scene));
         let to = if let Some(to) = to { Some(to?) } else { None };
         Some(ColourScale { field: typed.by, to, range, map: typed.map })
     };
@@ -137,16 +137,14 @@ pub(super) fn colour(
 }
 
 /// The ends of a scale, if they rise and differ enough.
-fn rising([low, high]: [f64; 2], path: &[PathPart<'_>; 3], report: &mut Collector<'_>) -> Option<[f64; 2]> {
-    let keys = path.iter().filter_map(|step| if let PathPart::Key(key) = step { Some(*key) } else { None });
-    let name = keys.collect::<Vec<_>>().join(".");
+fn rising([low, high]: [f64; 2], here: &Here<'_>) -> Option<[f64; 2]> {
     if low >= high {
-        report.at(path, format!("`{name}` runs from {low} to {high}; expected a rising range"), None);
+        here.wrong(format!("`{here}` runs from {low} to {high}; expected a rising range"), None);
         return None;
     }
     if high - low < NARROWEST * low.abs().max(high.abs()) {
-        let message = format!("`{name}` from {low} to {high} is too narrow for its numbers");
-        report.at(path, message, "move its ends apart".to_owned());
+        let message = format!("`{here}` from {low} to {high} is too narrow for its numbers");
+        here.wrong(message, "move its ends apart");
         return None;
     }
     Some([low, high])
