@@ -2,8 +2,6 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::fmt;
-use std::str::FromStr;
 
 /// A step as text: `"auto"`, or a fraction of the cycle T. `"T/50"` and `"0.02 T"` may differ in the last bit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,10 +26,10 @@ impl NamedStep {
     }
 }
 
-impl FromStr for NamedStep {
-    type Err = String;
+impl TryFrom<String> for NamedStep {
+    type Error = String;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn try_from(text: String) -> Result<Self, String> {
         let text = text.trim();
         let number = |text: &str| {
             let text = text.trim();
@@ -52,26 +50,13 @@ impl FromStr for NamedStep {
     }
 }
 
-impl fmt::Display for NamedStep {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Auto => write!(f, "auto"),
-            Self::Divided(parts) => write!(f, "T/{parts}"),
-            Self::Times(factor) => write!(f, "{factor} T"),
-        }
-    }
-}
-
-impl TryFrom<String> for NamedStep {
-    type Error = String;
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
 impl From<NamedStep> for String {
-    fn from(fraction: NamedStep) -> Self {
-        fraction.to_string()
+    fn from(step: NamedStep) -> Self {
+        match step {
+            NamedStep::Auto => "auto".to_owned(),
+            NamedStep::Divided(parts) => format!("T/{parts}"),
+            NamedStep::Times(factor) => format!("{factor} T"),
+        }
     }
 }
 

@@ -303,7 +303,7 @@ fn formatted(format: &str, text: &str) -> Option<Result<String, (String, Option<
     match format {
         "fraction-of-T" => {
             let wrong = |expected| (format!("; {expected}, or seconds as a number"), None);
-            Some(text.parse::<NamedStep>().map(|_| same()).map_err(wrong))
+            Some(NamedStep::try_from(same()).map(|_| same()).map_err(wrong))
         }
         "fraction" => Some(text.parse::<Ratio>().map(|_| same()).map_err(|expected| (format!("; {expected}"), None))),
         // A name and its digits are the same colour.
