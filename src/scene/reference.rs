@@ -177,12 +177,9 @@ fn kind(schema: &Value) -> String {
         let quoted: Vec<_> = choices.iter().map(|choice| format!("`\"{choice}\"`")).collect();
         return if described { "string".into() } else { quoted.join(" or ") };
     }
-    let bound = |keyword: &str| schema[keyword].as_f64();
-    let numbers =
-        |noun| range(noun, bound("minimum"), bound("maximum"), bound("exclusiveMinimum"), bound("exclusiveMaximum"));
     match (schema["type"].as_str(), schema["format"].as_str()) {
-        (Some("number"), _) => numbers("number"),
-        (Some("integer"), _) => numbers("whole number"),
+        (Some("number"), _) => range("number", schema),
+        (Some("integer"), _) => range("whole number", schema),
         (Some("boolean"), _) => "`true` or `false`".into(),
         (Some("string"), Some("colour")) => "colour".into(),
         (Some("string"), Some("fraction")) => "fraction such as `\"1/3\"`".into(),

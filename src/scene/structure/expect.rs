@@ -25,16 +25,12 @@ pub(super) fn expected(schema: &Json) -> String {
     .into()
 }
 
-/// The allowed numbers, in words.
-pub(in crate::scene) fn range(
-    noun: &str,
-    least: Option<f64>,
-    most: Option<f64>,
-    above: Option<f64>,
-    below: Option<f64>,
-) -> String {
+/// The numbers that a schema allows, in words.
+pub(in crate::scene) fn range(noun: &str, schema: &Json) -> String {
+    let bound = |keyword: &str| schema[keyword].as_f64();
+    let (least, above, below) = (bound("minimum"), bound("exclusiveMinimum"), bound("exclusiveMaximum"));
     // The limit of 32 bits is an implementation detail.
-    let most = most.filter(|&most| most < f64::from(u32::MAX));
+    let most = bound("maximum").filter(|&most| most < f64::from(u32::MAX));
     match (least, most, above, below) {
         (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),
         (Some(least), _, _, Some(below)) => format!("{noun} from {least} to less than {below}"),

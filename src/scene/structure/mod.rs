@@ -206,13 +206,11 @@ impl<'p> Walk<'_, 'p> {
             DeValue::Float(float) => (float.to_string(), float.as_str().parse().unwrap_or(f64::NAN)),
             _ => return Json::Null,
         };
-        let bound = |name: &str| schema.get(name).and_then(Json::as_f64);
-        let (least, most) = (bound("minimum"), bound("maximum"));
-        let (above, below) = (bound("exclusiveMinimum"), bound("exclusiveMaximum"));
-        let inside = least.is_none_or(|least| number >= least)
-            && most.is_none_or(|most| number <= most)
-            && above.is_none_or(|above| number > above)
-            && below.is_none_or(|below| number < below);
+        let bound = |name: &str| schema[name].as_f64();
+        let inside = bound("minimum").is_none_or(|least| number >= least)
+            && bound("maximum").is_none_or(|most| number <= most)
+            && bound("exclusiveMinimum").is_none_or(|above| number > above)
+            && bound("exclusiveMaximum").is_none_or(|below| number < below);
         if number.is_finite() && inside && number.abs() <= LARGEST {
             match value.get_ref().as_integer().filter(|_| whole).map(words::to_json) {
                 None => return Json::from(number),
@@ -227,7 +225,7 @@ impl<'p> Walk<'_, 'p> {
         } else if inside {
             format!("a magnitude up to {LARGEST:e}")
         } else {
-            range(if whole { "a whole number" } else { "a number" }, least, most, above, below)
+            range(if whole { "a whole number" } else { "a number" }, schema)
         };
         let help = self.meaning(schema);
         let text = words::shortened(&text);
