@@ -49,7 +49,7 @@ impl SceneOptions {
 
 /// The status for mistakes in a scene, or for one that could not be read.
 pub(super) fn status_of(error: &SceneError) -> Status {
-    if error.is_unreadable() { Status::Files } else { Status::Usage }
+    if matches!(error, SceneError::Unreadable { .. }) { Status::Files } else { Status::Usage }
 }
 
 impl From<SceneError> for Failure {

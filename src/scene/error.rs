@@ -85,11 +85,6 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Whether the system refused to read the file, so that its content is unknown.
-    pub(crate) fn is_unreadable(&self) -> bool {
-        matches!(self, Self::Unreadable { .. })
-    }
-
     /// The mistakes inside the file; empty for other errors.
     pub fn mistakes(&self) -> &[Mistake] {
         match self {

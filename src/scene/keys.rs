@@ -2,6 +2,7 @@
 
 use super::file::{BodyFile, Coordinates, Positive, SceneFile};
 use crate::reading::setting::Setting;
+use serde::Serialize;
 use toml::{Table, Value};
 
 /// The lists of one body in memory, which mean the same as the keys of scene files. They are not written as text, which takes long for
@@ -49,12 +50,6 @@ impl SceneKeys {
         Self { text: self.text.replace(folder, ""), ..self.clone() }
     }
 
-    /// Puts the lists in place of their first entries.
-    #[cfg(feature = "render")]
-    pub(super) fn put_lists(&self, keys: &mut Table) {
-        extend(keys, &self.lists, usize::MAX);
-    }
-
     /// The first setting of a list in memory, or of a table that contains one, whose text would be ignored.
     pub(super) fn of_lists<'s>(&self, settings: &'s [Setting]) -> Option<&'s Setting> {
         let is_list = |key: &str| self.lists.iter().any(|lists| lists.begun(1).any(|(list, _)| list == key));
@@ -68,7 +63,7 @@ impl SceneKeys {
 
 /// Gives bodies among the keys of a scene their lists, of which up to so many entries each: the check of a scene file looks at one, and
 /// that there are lists at all.
-fn extend(keys: &mut Table, lists: &[BodyLists], most: usize) {
+pub(super) fn extend(keys: &mut Table, lists: &[BodyLists], most: usize) {
     for (at, lists) in lists.iter().enumerate() {
         let body = match keys.get_mut("body") {
             Some(Value::Array(several)) => several.get_mut(at),
@@ -82,19 +77,17 @@ fn extend(keys: &mut Table, lists: &[BodyLists], most: usize) {
 impl BodyLists {
     /// The keys of the lists that are given, and up to so many entries of each.
     fn begun(&self, most: usize) -> impl Iterator<Item = (&'static str, Value)> {
-        fn begun<T>(list: &Option<Vec<T>>, most: usize, entry: impl Fn(&T) -> Value) -> Option<Value> {
-            list.as_ref().map(|list| Value::Array(list.iter().take(most).map(entry).collect()))
+        fn begun<T: Serialize>(list: &Option<Vec<T>>, most: usize) -> Option<Value> {
+            list.as_ref().map(|list| Value::try_from(&list[..most.min(list.len())]).expect("numbers and lists of them"))
         }
-        let point = |Coordinates(at): &Coordinates| Value::from(at.clone());
-        let row = |nodes: &Vec<u32>| Value::from(nodes.clone());
         let lists = [
-            ("nodes", begun(&self.nodes, most, point)),
-            ("elements", begun(&self.elements, most, row)),
-            ("springs", begun(&self.springs, most, |pair| Value::from(pair.to_vec()))),
-            ("faces", begun(&self.faces, most, row)),
-            ("positions", begun(&self.positions, most, point)),
-            ("velocities", begun(&self.velocities, most, point)),
-            ("masses", begun(&self.masses, most, |&mass| Value::from(mass))),
+            ("nodes", begun(&self.nodes, most)),
+            ("elements", begun(&self.elements, most)),
+            ("springs", begun(&self.springs, most)),
+            ("faces", begun(&self.faces, most)),
+            ("positions", begun(&self.positions, most)),
+            ("velocities", begun(&self.velocities, most)),
+            ("masses", begun(&self.masses, most)),
         ];
         lists.into_iter().filter_map(|(key, list)| Some((key, list?)))
     }

@@ -2,6 +2,8 @@
 
 use super::error::SceneError;
 use super::file::SceneFile;
+#[cfg(feature = "render")]
+use super::keys::extend;
 use super::keys::{BodyLists, SceneKeys};
 use super::limits::Limits;
 use super::mesh::is_mesh;
@@ -212,7 +214,7 @@ pub(super) fn checked<T>(
 #[cfg(feature = "render")]
 pub(crate) fn keys_in_memory(keys: &SceneKeys, settings: &[Setting]) -> Table {
     let mut table = keys_of(&keys.text, settings);
-    keys.put_lists(&mut table);
+    extend(&mut table, &keys.lists, usize::MAX);
     table
 }
 

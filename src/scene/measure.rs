@@ -104,7 +104,12 @@ fn exerted(from: &[Source], forces: &[Reaction], on: Option<usize>) -> [DVec3; 2
     if from.is_empty() || forces.is_empty() {
         return [DVec3::NAN; 2];
     }
-    let found = forces.iter().filter(|one| from.contains(&one.from) && on.is_none_or(|on| one.on == on));
+    sum(forces.iter().filter(|one| from.contains(&one.from)), on)
+}
+
+/// The sums of forces (N) and of torques (N m) on a body, or on all.
+fn sum<'a>(forces: impl Iterator<Item = &'a Reaction>, on: Option<usize>) -> [DVec3; 2] {
+    let found = forces.filter(|one| on.is_none_or(|on| one.on == on));
     found.fold([DVec3::ZERO; 2], |[force, torque], one| [force + one.force, torque + one.torque])
 }
 
@@ -128,14 +133,8 @@ impl<'a> Forces<'a> {
 
     /// The force (N) and the torque about the origin (N m) of each thing on a body, or on all; NaN where they are not known.
     pub(crate) fn on(&self, on: Option<usize>) -> impl Iterator<Item = (&'a str, [DVec3; 2])> {
-        self.named.iter().map(move |(name, all)| {
-            if all.is_empty() {
-                return (*name, [DVec3::NAN; 2]);
-            }
-            let found = all.iter().filter(|one| on.is_none_or(|on| one.on == on));
-            let sum = found.fold([DVec3::ZERO; 2], |[force, torque], one| [force + one.force, torque + one.torque]);
-            (*name, sum)
-        })
+        let of = move |all: &[&Reaction]| if all.is_empty() { [DVec3::NAN; 2] } else { sum(all.iter().copied(), on) };
+        self.named.iter().map(move |(name, all)| (*name, of(all)))
     }
 }
 

@@ -278,8 +278,7 @@ impl ReadMoment {
             ));
         };
         let bytes = beside::bytes(path, &[&*ending], limits.file, "a moment", "expected a file").map_err(told)?;
-        let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
-        let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
+        let limits = limits.of_mesh();
         let cells = mesh::read_cells(&bytes, format, &limits).map_err(|error| told((error.message, error.help)))?;
         if !matches!(format, Format::Gmsh | Format::Vtk | Format::Vtu | Format::Medit | Format::Abaqus) {
             self.is_surface = true;
