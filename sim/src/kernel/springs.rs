@@ -193,7 +193,7 @@ impl Stencil {
         let lost = first_lost(crew, slabs, |_, own| {
             own.map(|slab| self.set.run(OneSlab { springs, slab, pass, around })).fold(NONE, u32::min)
         });
-        let of_deferred = first_lost(crew, slabs - 1, |_, own| {
+        let of_deferred = first_lost(crew, slabs.saturating_sub(1), |_, own| {
             own.map(|slab| self.set.run(Deferred { springs, slab: slab + 1, pass, around })).fold(NONE, u32::min)
         });
         let lost = lost.min(of_deferred);
