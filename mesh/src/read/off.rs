@@ -3,7 +3,6 @@
 use super::builder::Builder;
 use super::source::{Scalar, Source};
 use super::{Cells, Format, Limits, ReadError, content};
-use glam::DVec3;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
@@ -35,19 +34,16 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let faces = numbers.count(Scalar::I64, "the number of faces")?;
     let mut builder = Builder::new(limits);
     builder.expect(points, faces)?;
-    if let Some(all) = Together::new(&numbers, &source, [points, faces], word) {
-        all.points.iter().try_for_each(|&(point, at)| builder.point_at(point, at).map(drop))?;
-        all.faces.iter().try_for_each(|face| builder.face(face))?;
-        return builder.finish(&source, 0);
-    }
     for at in 0..points {
-        let mut line = source.next_line().ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
+        let mut line =
+            source.next_line().ok_or_else(|| source.ends(&format!("a line with point {} of {points}", at + 1)))?;
         let start = line.at;
         builder.point_at(line.point(Scalar::F64)?, start)?;
     }
     let mut corners = Vec::new();
     for at in 0..faces {
-        let mut line = source.next_line().ok_or_else(|| source.ends(&format!("face {} of {faces}", at + 1)))?;
+        let mut line =
+            source.next_line().ok_or_else(|| source.ends(&format!("a line with face {} of {faces}", at + 1)))?;
         corners.clear();
         for _ in 0..line.count(Scalar::I64, "the number of corners of a face")? {
             let start = line.at;
@@ -60,53 +56,4 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         builder.tell_rest(&mut rest);
     }
     builder.finish(&source, 0)
-}
-
-/// The points, with their places, and the faces of a file with several in one line.
-#[derive(Default)]
-struct Together {
-    points: Vec<(DVec3, usize)>,
-    faces: Vec<Vec<u32>>,
-}
-
-impl Together {
-    /// Reads so many points and faces as words, if there are fewer lines than that and exactly as many words. They begin in the line
-    /// with `numbers`, behind the number of edges, or in the `rest`. What `word`, the first of the file, names follows coordinates.
-    fn new(numbers: &Source<'_>, rest: &Source<'_>, [points, faces]: [u64; 2], word: &[u8]) -> Option<Self> {
-        if lines(rest) >= points.saturating_add(faces) {
-            return None;
-        }
-        let mut source = rest.clone();
-        source.at = numbers.at;
-        if !numbers.clone().is_done() {
-            source.word();
-        }
-        let has = |letter: u8| u64::from(word.strip_suffix(b"OFF").is_some_and(|before| before.contains(&letter)));
-        let behind = 3 * has(b'N') + 4 * has(b'C') + 2 * has(b'T');
-        let mut all = Self::default();
-        for _ in 0..points {
-            all.points.push((source.point(Scalar::F64).ok()?, source.at - 1));
-            source.skip(behind, Scalar::F64, "a number").ok()?;
-        }
-        // Colours of faces end with their lines.
-        let are_lines = lines(&source) >= faces;
-        for _ in 0..faces {
-            let mut line = are_lines.then(|| source.next_line()).flatten();
-            all.faces.push(face(line.as_mut().unwrap_or(&mut source), points)?);
-        }
-        source.is_done().then_some(all)
-    }
-}
-
-/// The number of lines that are left.
-fn lines(source: &Source<'_>) -> u64 {
-    let mut source = source.clone();
-    std::iter::from_fn(|| source.next_line()).count() as u64
-}
-
-/// A face with some of so many points.
-fn face(source: &mut Source<'_>, points: u64) -> Option<Vec<u32>> {
-    let mut corner = || source.count(Scalar::I64, "a number").ok();
-    let count = corner()?;
-    (0..count).map(|_| corner().filter(|&corner| corner < points).and_then(|corner| corner.try_into().ok())).collect()
 }

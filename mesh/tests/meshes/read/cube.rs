@@ -141,7 +141,7 @@ fn refusals_say_where_and_what_to_do() {
         (Off, "", format!("is empty {incomplete}")),
         (Off, "OFF\n8 6 0\n0 0", format!("ends in line 3; expected a coordinate {incomplete}")),
         (Off, "OFF\n8 6 0\n0 0\n1 2 3", format!("has nothing more in line 3; expected a coordinate {damaged}")),
-        (Off, "OFF\n8 6 0\n0 0 0\n", format!("ends in line 4; expected point 2 of 8 {incomplete}")),
+        (Off, "OFF\n8 6 0\n0 0 0\n", format!("ends in line 4; expected a line with point 2 of 8 {incomplete}")),
         (Off, "OFF\n1 1 0\n0 0 x\n", format!("has `x` in line 3; expected a coordinate {damaged}")),
         (
             Off,
