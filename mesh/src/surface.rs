@@ -8,6 +8,7 @@ mod refining;
 use super::Group;
 use super::edges::{EdgeUse, net};
 use glam::DVec3;
+use localshape_sim::geometry::bounds;
 
 /// A surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -75,10 +76,7 @@ impl Surface {
             used[point as usize] = true;
         }
         let all = || self.points.iter().zip(&used).filter(|(_, used)| **used).map(|(&point, _)| point);
-        let (low, high) = match all().next() {
-            Some(first) => all().fold((first, first), |(low, high), point| (low.min(point), high.max(point))),
-            None => (DVec3::ZERO, DVec3::ZERO),
-        };
+        let (low, high) = bounds(&all().collect::<Vec<_>>());
         let (mut volume, mut area) = (0.0, 0.0);
         for &triangle in &self.triangles {
             let [a, b, c] = self.corners(triangle).map(|corner| corner - low);

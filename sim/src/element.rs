@@ -92,7 +92,7 @@ pub(super) fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
 
 /// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; the only face of a
 /// polygon is itself.
-pub(crate) fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
+pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
     if kind == ElementKind::Polygon {
         return visit(nodes);
     }

@@ -2,7 +2,7 @@
 
 pub use super::alike::Alike;
 pub use super::contact::ground;
-pub use super::element::{around, kind, ordered};
+pub use super::element::{around, for_each_face, kind, ordered};
 pub use super::hull::bounds;
 pub use super::volume::{node_volumes, volume_by_faces, volumes_at_rest};
 

@@ -2,39 +2,25 @@
 //! whose points are welded.
 
 use super::kinds;
+use super::polygon::outline;
 use glam::DVec3;
 use localshape_sim::ElementKind;
+use localshape_sim::geometry::for_each_face;
 
 /// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
 pub(super) const FLAT: f64 = 1e-12;
 
-/// The faces of a cell of a kind that may be a simpler one, as places in its list, counter-clockwise from outside.
-fn sides(kind: ElementKind) -> &'static [&'static [usize]] {
-    match kind {
-        ElementKind::Pyramid => &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],
-        ElementKind::Wedge => &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
-        ElementKind::Hexahedron => {
-            &[&[0, 4, 6, 2], &[1, 3, 7, 5], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 2, 3, 1], &[4, 5, 7, 6]]
-        }
-        _ => &[],
-    }
-}
-
 /// What is left of the faces of a cell: triangles and quadrilaterals, each with different corners.
 fn faces(kind: ElementKind, cell: &[u32]) -> Vec<Vec<u32>> {
     let mut faces = Vec::new();
-    for side in sides(kind) {
-        let mut face: Vec<u32> = side.iter().map(|&place| cell[place]).collect();
-        face.dedup();
-        if face.len() > 1 && face.first() == face.last() {
-            face.pop();
-        }
+    for_each_face(kind, cell, |side| {
+        let face = outline(side);
         // A face that goes back where it came from has no area.
         let is_there_and_back = face.len() == 4 && (face[0] == face[2] || face[1] == face[3]);
         if face.len() > 2 && !is_there_and_back {
             faces.push(face);
         }
-    }
+    });
     faces
 }
 

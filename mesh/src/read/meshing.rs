@@ -1,11 +1,11 @@
 //! The mesh that cells of a file make.
 
 use super::order::Parts;
-use super::polygon::Triangulation;
+use super::polygon::{Triangulation, outline};
 use super::source::quoted;
 use super::used::{NONE, Used};
 use super::{CellKind, Cells, Format, Mesh, ReadError, Surface, Volume};
-use glam::DVec3;
+use localshape_sim::geometry::bounds;
 use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
 use std::collections::BTreeSet;
 
@@ -65,9 +65,8 @@ impl Cells {
     /// Whether all faces have the same z, to round-off.
     fn is_plane(&self) -> bool {
         let faces = self.chosen(CellKind::is_face);
-        let points = || faces.flat_map(|(.., corners)| corners).map(|&point| self.points[point as usize]);
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        points().for_each(|point| (low, high) = (low.min(point), high.max(point)));
+        let points = faces.flat_map(|(.., corners)| corners).map(|&point| self.points[point as usize]);
+        let (low, high) = bounds(&points.collect::<Vec<_>>());
         high.z - low.z <= 1e-9 * (high - low).max_element()
     }
 
@@ -163,8 +162,7 @@ impl Cells {
                 (ElementKind::Other, 4) => ElementKind::Tetrahedron,
                 (element, _) => element,
             };
-            let mut cell = corners.to_vec();
-            parts.add(at, element, &mut cell, &self.points);
+            parts.add(at, element, &mut corners.to_vec(), &self.points);
         }
         self.ordered(parts, Dimension::Space, solids)
     }
@@ -173,12 +171,7 @@ impl Cells {
         let mut parts = Parts::new(Dimension::Plane, self.kinds.len());
         self.points.iter_mut().for_each(|point| point.z = 0.0);
         for (at, _, corners) in self.chosen(CellKind::is_face) {
-            let mut cell = corners.to_vec();
-            cell.dedup();
-            if cell.first() == cell.last() {
-                cell.pop();
-            }
-            parts.add(at, ElementKind::Polygon, &mut cell, &self.points);
+            parts.add(at, ElementKind::Polygon, &mut outline(corners), &self.points);
         }
         self.ordered(parts, Dimension::Plane, Solids::Ordered)
     }

@@ -4,7 +4,7 @@ use super::ReadError;
 use super::cells::along;
 use super::collapsed::{self, FLAT};
 use glam::DVec3;
-use localshape_sim::geometry::volume_by_faces;
+use localshape_sim::geometry::{bounds, volume_by_faces};
 use localshape_sim::{Dimension, ElementKind, IndexLists};
 use std::collections::HashSet;
 
@@ -72,11 +72,7 @@ impl Parts {
 
     /// Puts the corners of a cell into the expected order. Returns false if it has no area or volume.
     fn order(&mut self, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) -> bool {
-        let (mut low, mut high) = (points[cell[0] as usize], points[cell[0] as usize]);
-        cell.iter().for_each(|&corner| {
-            low = low.min(points[corner as usize]);
-            high = high.max(points[corner as usize]);
-        });
+        let (low, high) = bounds(&cell.iter().map(|&corner| points[corner as usize]).collect::<Vec<_>>());
         let size = (high - low).max_element();
         let whole = if kind == ElementKind::Polygon { size * size } else { size * size * size };
         let mut measure = volume_by_faces(kind, cell, points);

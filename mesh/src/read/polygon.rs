@@ -21,6 +21,16 @@ pub(super) struct Triangulation<'p> {
 /// The comparisons for all polygons of a file: about a second.
 const WORK: usize = 1 << 26;
 
+/// The corners of a polygon, once if they follow each other; none if all are equal.
+pub(super) fn outline(corners: &[u32]) -> Vec<u32> {
+    let mut outline = corners.to_vec();
+    outline.dedup();
+    if outline.first() == outline.last() {
+        outline.pop();
+    }
+    outline
+}
+
 impl<'p> Triangulation<'p> {
     pub(super) fn new(points: &'p [DVec3]) -> Self {
         Self { points, left: WORK, flat: Vec::new(), ring: Vec::new() }
@@ -32,15 +42,14 @@ impl<'p> Triangulation<'p> {
             triangles.push([a, b, c]);
             return true;
         }
-        let mut corners = corners.to_vec();
-        corners.dedup();
-        while corners.len() > 1 && corners.first() == corners.last() {
-            corners.pop();
+        let corners = outline(corners);
+        if corners.len() < 3 {
+            return true;
         }
         self.project(&corners);
         self.ring.clear();
         self.ring.extend(0..corners.len());
-        if self.fan(0) {
+        if self.is_fan() {
             triangles.extend((2..corners.len()).map(|at| [corners[0], corners[at - 1], corners[at]]));
             return true;
         }
@@ -91,12 +100,11 @@ impl<'p> Triangulation<'p> {
         orient2d(a, b, c)
     }
 
-    /// Whether the triangles from a corner to all sides divide the polygon: each turns left, and the polygon turns around once.
-    fn fan(&self, from: usize) -> bool {
+    /// Whether the triangles from the first corner to all sides divide the polygon: each turns left, and the polygon turns around once.
+    fn is_fan(&self) -> bool {
         let count = self.flat.len();
-        let place = |at: usize| (from + at) % count;
-        (2..count).all(|at| self.turn(from, place(at - 1), place(at)) > 0.0)
-            && (count <= 4 || (0..count).all(|at| self.turn(place(at), place(at + 1), place(at + 2)) > 0.0))
+        (2..count).all(|at| self.turn(0, at - 1, at) > 0.0)
+            && (count <= 4 || (0..count).all(|at| self.turn(at, (at + 1) % count, (at + 2) % count) > 0.0))
     }
 
     /// Whether no other corner lies in a triangle or on its border, except at the places of its corners.
