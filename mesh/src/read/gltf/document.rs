@@ -41,9 +41,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
         true => ReadError::new("ends in its JSON", CUT),
         false => no(error.to_string()),
     })?;
-    if is_old(&value) {
-        return Err(old());
-    }
     check_version(&value)?;
     let is_hidden = value.get("nodes").and_then(Value::as_array).into_iter().flatten().map(is_hidden).collect();
     // Scenes may leave out their lists of nodes.
@@ -101,9 +98,14 @@ fn is_hidden(node: &Value) -> bool {
     extension.and_then(|extension| extension.get("visible")).and_then(Value::as_bool) == Some(false)
 }
 
-/// Refuses a file that needs a later version. Those of 2.1 and later may be read as 2.0 if they do not say otherwise.
+/// Refuses a file of version 1.0, which names things where 2.0 numbers them, and one that needs a later version. Those of 2.1 and later may
+/// be read as 2.0 if they do not say otherwise.
 fn check_version(value: &Value) -> Result<(), ReadError> {
     let asset = |key: &str| value.get("asset").and_then(|asset| asset.get(key)).and_then(Value::as_str);
+    let are_named = ["meshes", "nodes"].iter().any(|key| value.get(key).is_some_and(Value::is_object));
+    if are_named || asset("version").is_some_and(|version| version.starts_with('1')) {
+        return Err(old());
+    }
     let later = match (asset("version"), asset("minVersion")) {
         (_, Some(least)) if !matches!(least, "1.0" | "2.0") => least,
         (Some(version), _) if version.split('.').next() != Some("2") => version,
@@ -111,13 +113,6 @@ fn check_version(value: &Value) -> Result<(), ReadError> {
     };
     let message = format!("is a glTF file of the version {}; expected 2.0", quoted(later.as_bytes()));
     Err(ReadError::new(message, "export it again as glTF 2.0 (.glb)"))
-}
-
-/// Whether a file is one of version 1.0, which names things where 2.0 numbers them.
-fn is_old(value: &Value) -> bool {
-    let version = value.get("asset").and_then(|asset| asset.get("version")).and_then(|version| version.as_str());
-    let are_named = ["meshes", "nodes"].iter().any(|key| value.get(key).is_some_and(Value::is_object));
-    are_named || version.is_some_and(|version| version.starts_with('1'))
 }
 
 fn old() -> ReadError {
