@@ -4,7 +4,7 @@
 mod keyword;
 mod sets;
 
-use super::builder::{self, Builder};
+use super::builder::Builder;
 use super::gmsh::Kind;
 use super::meshing::BESIDE;
 use super::source::{DAMAGED, Scalar, Source};
@@ -13,18 +13,15 @@ use super::{Cells, Format, Limits, ReadError, content};
 use keyword::Keyword;
 use std::collections::BTreeMap;
 
-struct Reader<'b, 'l> {
+struct Reader<'b> {
     source: Source<'b>,
-    builder: Builder<'l>,
-    limits: &'l Limits,
+    builder: Builder,
     /// The numbers of nodes and of elements.
     tags: [Tags; 2],
     /// The sets of nodes and of elements by their names in capitals: the name as typed, and the members.
     sets: [BTreeMap<String, (String, Vec<u32>)>; 2],
     /// The number of elements of each type that is not read.
     skipped: BTreeMap<String, usize>,
-    /// The members of all sets so far that the file does not list one by one.
-    spent: usize,
     /// The numbers of parts and of instances.
     parts: [usize; 2],
     /// The number of sets of an assembly that name no instance.
@@ -39,8 +36,8 @@ const ELEMENTS: usize = 1;
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let (mut source, builder) = (Source::text(bytes), Builder::new(limits));
     source.continues = false;
-    let (tags, sets, skipped, spent, parts, left_out, is_assembly) = Default::default();
-    let mut reader = Reader { source, builder, limits, tags, sets, skipped, spent, parts, left_out, is_assembly };
+    let (tags, sets, skipped, parts, left_out, is_assembly) = Default::default();
+    let mut reader = Reader { source, builder, tags, sets, skipped, parts, left_out, is_assembly };
     let mut is_begun = false;
     while let Some(line) = line(&mut reader.source) {
         if line.rest().starts_with(b"*") {
@@ -83,7 +80,7 @@ fn capitals(text: &str) -> String {
     text.split_whitespace().collect::<String>().to_uppercase()
 }
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     fn read(&mut self, keyword: &Keyword<'_>) -> Result<(), ReadError> {
         let has = |parameter: &str| keyword.get(parameter).is_some();
         let is_partial = match &*keyword.name {
@@ -238,7 +235,7 @@ impl Reader<'_, '_> {
             if !nodes.contains_key(&key) {
                 let corners = members.iter().flat_map(|&member| &self.builder.cells.corners[member as usize]);
                 let points: Vec<u32> = corners.copied().collect();
-                builder::spend(&mut self.spent, points.len(), self.limits)?;
+                self.builder.spend(points.len())?;
                 self.builder.group(name, points);
             }
         }

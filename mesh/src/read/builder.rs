@@ -2,6 +2,8 @@
 
 mod finish;
 
+pub(super) use finish::beyond;
+
 use super::cells::along;
 use super::source::{Coding, Source};
 use super::{CellKind, Cells, Limits, ReadError};
@@ -25,8 +27,8 @@ pub(super) enum Ghost {
 type Key = (i64, i64);
 
 /// Cells while they are read.
-#[derive(Debug)]
-pub(super) struct Builder<'l> {
+#[derive(Debug, Default)]
+pub(super) struct Builder {
     pub(super) cells: Cells,
     /// What VTK tells of the first points and cells.
     ghosts: [Vec<Ghost>; 2],
@@ -34,9 +36,11 @@ pub(super) struct Builder<'l> {
     /// Sets of points by their numbers, and the names of some of them.
     numbered: BTreeMap<Key, Vec<u32>>,
     pub(super) set_names: HashMap<Key, String>,
-    /// The number of points in all sets.
+    /// The number of points in all sets that the file does not list one by one.
     grouped: usize,
-    limits: &'l Limits,
+    most_points: usize,
+    /// The most corners of all cells.
+    pub(super) most_corners: usize,
     /// Whether cells of higher order gave their corners only.
     pub(super) is_curved: bool,
     /// The number of polyhedra that are not convex.
@@ -51,25 +55,9 @@ pub(super) struct Builder<'l> {
     named: BTreeMap<String, Vec<Range<usize>>>,
 }
 
-impl<'l> Builder<'l> {
-    pub(super) fn new(limits: &'l Limits) -> Self {
-        let (cells, ghosts, groups, numbered, set_names, grouped) = Default::default();
-        let (is_curved, concave, highest, lost, names, named) = Default::default();
-        Self {
-            cells,
-            ghosts,
-            groups,
-            numbered,
-            set_names,
-            grouped,
-            limits,
-            is_curved,
-            concave,
-            highest,
-            lost,
-            names,
-            named,
-        }
+impl Builder {
+    pub(super) fn new(limits: &Limits) -> Self {
+        Self { most_points: limits.points, most_corners: limits.corners, ..Self::default() }
     }
 
     pub(super) fn points(&self) -> usize {
@@ -83,7 +71,7 @@ impl<'l> Builder<'l> {
 
     /// Refuses numbers of points and cells beyond the limits, before they are read.
     pub(super) fn expect(&self, points: u64, cells: u64) -> Result<(), ReadError> {
-        for (count, most, what) in [(points, self.limits.points, "points"), (cells, self.limits.corners / 3, "cells")] {
+        for (count, most, what) in [(points, self.most_points, "points"), (cells, self.most_corners / 3, "cells")] {
             if count > most as u64 {
                 return Err(too_many(&count.to_string(), what, most));
             }
@@ -101,7 +89,7 @@ impl<'l> Builder<'l> {
             let message = format!("has point {index} at [{x:?}, {y:?}, {z:?}]; expected coordinates up to 1e100");
             return Err(ReadError::damaged(message));
         }
-        let most = self.limits.points.min(u32::MAX as usize - 1);
+        let most = self.most_points.min(u32::MAX as usize - 1);
         if index >= most {
             return Err(too_many(&format!("more than {most}"), "points", most));
         }
@@ -143,7 +131,7 @@ impl<'l> Builder<'l> {
     }
 
     pub(super) fn cell(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
-        let most = self.limits.corners.min(u32::MAX as usize - 1);
+        let most = self.most_corners.min(u32::MAX as usize - 1);
         if corners.is_empty() {
             return Ok(());
         }
@@ -157,22 +145,20 @@ impl<'l> Builder<'l> {
 
     /// Adds a cell whose corners, if it is a hexahedron, are listed around one side and then around the other.
     pub(super) fn around(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
-        match *corners {
-            [a, b, c, d, e, f, g, h] if kind == CellKind::Hexahedron => {
-                self.cell(kind, &along(&[a, b, c, d, e, f, g, h]))
-            }
+        match corners.first_chunk() {
+            Some(all) if kind == CellKind::Hexahedron => self.cell(kind, &along(all)),
             _ => self.cell(kind, corners),
         }
     }
 
     /// Adds a polygon, or what is left of one with less than three corners.
     pub(super) fn face(&mut self, corners: &[u32]) -> Result<(), ReadError> {
-        match corners.len() {
-            0 => Ok(()),
-            1 => self.cell(CellKind::Point, corners),
-            2 => self.cell(CellKind::Line, corners),
-            _ => self.cell(CellKind::Polygon, corners),
-        }
+        let kind = match corners.len() {
+            1 => CellKind::Point,
+            2 => CellKind::Line,
+            _ => CellKind::Polygon,
+        };
+        self.cell(kind, corners)
     }
 
     pub(super) fn strip(&mut self, corners: &[u32]) -> Result<(), ReadError> {
@@ -183,24 +169,25 @@ impl<'l> Builder<'l> {
         Ok(())
     }
 
-    /// Adds the velocities of the next points.
-    pub(super) fn velocities(&mut self, velocities: Vec<DVec3>) {
-        self.cells.velocities.get_or_insert_default().extend(velocities);
-    }
-
-    /// Adds the displacements of the next points.
-    pub(super) fn displacements(&mut self, displacements: Vec<DVec3>) {
-        self.cells.displacements.get_or_insert_default().extend(displacements);
-    }
-
     /// Adds points to the set of this name.
     pub(super) fn group(&mut self, name: String, points: Vec<u32>) {
         self.groups.entry(name).or_default().extend(points);
     }
 
+    /// Refuses sets with very many members, of which so many are added.
+    pub(super) fn spend(&mut self, members: usize) -> Result<(), ReadError> {
+        let most = self.most_corners.saturating_mul(4);
+        self.grouped = self.grouped.saturating_add(members);
+        if self.grouped > most {
+            let message = format!("has groups with more than {most} nodes");
+            return Err(ReadError::new(message, "put each element into one group or few"));
+        }
+        Ok(())
+    }
+
     /// Adds points to the set of a number, which names it unless `set_names` does.
     pub(super) fn number(&mut self, set: Key, points: &[u32]) -> Result<(), ReadError> {
-        spend(&mut self.grouped, points.len(), self.limits)?;
+        self.spend(points.len())?;
         self.numbered.entry(set).or_default().extend(points);
         Ok(())
     }
@@ -228,17 +215,6 @@ impl<'l> Builder<'l> {
             self.ghosts[1].resize(end, ghost);
         }
     }
-}
-
-/// Refuses sets with very many members.
-pub(super) fn spend(spent: &mut usize, members: usize, limits: &Limits) -> Result<(), ReadError> {
-    let most = limits.corners.saturating_mul(4);
-    *spent = spent.saturating_add(members);
-    if *spent > most {
-        let message = format!("has groups with more than {most} nodes");
-        return Err(ReadError::new(message, "put each element into one group or few"));
-    }
-    Ok(())
 }
 
 pub(super) fn too_many(found: &str, what: &str, most: usize) -> ReadError {

@@ -36,14 +36,14 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, beside: &mut Beside<'_>) -> Re
 }
 
 /// The scene that a file shows.
-struct Scene<'b, 'l> {
+struct Scene<'b> {
     lists: Lists<'b>,
-    builder: Builder<'l>,
+    builder: Builder,
     /// The transform of each node of the scene with those above it.
     places: Vec<Option<DMat4>>,
 }
 
-impl Scene<'_, '_> {
+impl Scene<'_> {
     /// The nodes of the scene that are not hidden in the order of the tree, with the places of all noted.
     fn place<'d>(&mut self, document: &'d Document, is_hidden: &[bool]) -> Result<Vec<Node<'d>>, ReadError> {
         // The nodes to visit, the next last, with the transform of what is above them and whether that is shown.

@@ -16,9 +16,9 @@ use std::rc::Rc;
 /// A dimension and the number of an entity or of a group.
 type Key = (i64, i64);
 
-struct Reader<'b, 'l> {
+struct Reader<'b> {
     source: Source<'b>,
-    builder: Builder<'l>,
+    builder: Builder,
     /// How the numbers of the sections are written.
     coding: Coding,
     /// The type of counts in the version 4.1.
@@ -97,7 +97,7 @@ fn skip(source: &mut Source<'_>, section: &[u8]) -> Result<(), ReadError> {
     Ok(())
 }
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     /// Reads a section whose numbers are text or binary.
     fn with_coding(&mut self, read: fn(&mut Self) -> Result<(), ReadError>) -> Result<(), ReadError> {
         self.source.coding = self.coding;

@@ -7,8 +7,11 @@ use super::source::DAMAGED;
 use glam::DVec3;
 use localshape_sim::geometry::bounds;
 
+/// The remedy for grids of other types.
+pub(super) const AS_GRID: &str = "write it as an unstructured grid: ParaView's filter `Append Datasets` makes one";
+
 /// Adds a cell of a type. Of cells of higher order the corners are taken, which VTK lists first.
-pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Result<(), ReadError> {
+pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder) -> Result<(), ReadError> {
     use CellKind::{Hexahedron, Line, Point, Polygon, Polyhedron, Pyramid, Tetrahedron, Wedge};
     // The kind, and the number of corners; 0 if it is open. Cells of first order have no other points.
     let (cell, count) = match kind {
@@ -63,7 +66,7 @@ pub(super) fn faces(list: &[i64]) -> Option<Vec<&[i64]>> {
 
 /// Adds a polyhedron with these faces, as a tetrahedron, pyramid, wedge or hexahedron if it is one. More points than its corners may be
 /// listed: those that hang in its edges and faces.
-pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Builder<'_>) -> Result<(), ReadError> {
+pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Builder) -> Result<(), ReadError> {
     let mut points: Vec<u32> = faces.concat();
     points.extend(listed);
     points.sort_unstable();

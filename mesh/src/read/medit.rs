@@ -46,14 +46,14 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     reader.builder.finish(&reader.source, 1)
 }
 
-struct Reader<'b, 'l> {
+struct Reader<'b> {
     source: Source<'b>,
-    builder: Builder<'l>,
+    builder: Builder,
     /// The keywords about cells that are not read, and where the data of each begin.
     unread: Vec<(&'b [u8], usize)>,
 }
 
-impl<'b> Reader<'b, '_> {
+impl<'b> Reader<'b> {
     fn count(&mut self, expected: &str) -> Result<u64, ReadError> {
         // Mistakes are told where the word is.
         let word = self.source.word();

@@ -108,7 +108,7 @@ fn skip(property: &Property<'_>, source: &mut Source<'_>) -> Result<(), ReadErro
     source.skip(count, property.scalar, "a number")
 }
 
-fn points(element: &Element<'_>, source: &mut Source<'_>, builder: &mut Builder<'_>) -> Result<(), ReadError> {
+fn points(element: &Element<'_>, source: &mut Source<'_>, builder: &mut Builder) -> Result<(), ReadError> {
     let axis = |name: &[u8]| element.properties.iter().position(|found| found.name == name && found.length.is_none());
     let (Some(x), Some(y), Some(z)) = (axis(b"x"), axis(b"y"), axis(b"z")) else {
         return Err(ReadError::new("has no properties `x`, `y` and `z` of `vertex` in its header", DAMAGED));
@@ -132,7 +132,7 @@ fn points(element: &Element<'_>, source: &mut Source<'_>, builder: &mut Builder<
 fn faces(
     element: &Element<'_>,
     source: &mut Source<'_>,
-    builder: &mut Builder<'_>,
+    builder: &mut Builder,
     are_strips: bool,
 ) -> Result<(), ReadError> {
     let is_list = |property: &&Property<'_>| property.length.is_some();

@@ -65,12 +65,7 @@ fn entries<T>(
         match event {
             Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref().as_bytes() == b"VTKFile" => {
                 is_begun = true;
-                let kind = attribute(&tag, "type")?.unwrap_or_default();
-                if !kinds.contains(&&*kind) {
-                    let (kind, kinds) = (quoted(kind.as_bytes()), kinds.join("` or `"));
-                    let message = format!("is a VTK file of the type {kind}; expected `{kinds}`");
-                    return Err(ReadError::new(message, "a single file is named by its own ending, such as .vtu"));
-                }
+                check_type(&tag, kinds, "a single file is named by its own ending, such as .vtu")?;
             }
             Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref().as_bytes() == name.as_bytes() => {
                 let end = reader.buffer_position();
@@ -83,6 +78,16 @@ fn entries<T>(
             _ => {}
         }
     }
+}
+
+/// Refuses a VTK file that is of none of these types.
+pub(super) fn check_type(tag: &BytesStart<'_>, types: &[&str], help: &str) -> Result<(), ReadError> {
+    let found = attribute(tag, "type")?.unwrap_or_default();
+    if types.contains(&&*found) {
+        return Ok(());
+    }
+    let (found, types) = (quoted(found.as_bytes()), types.join("` or `"));
+    Err(ReadError::new(format!("is a VTK file of the type {found}; expected `{types}`"), help))
 }
 
 /// An attribute that an element at a place has to have.

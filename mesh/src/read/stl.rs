@@ -37,7 +37,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
 }
 
 /// Reads `facet … vertex x y z vertex x y z vertex x y z … endfacet`, in any number of solids.
-fn text(source: &mut Source<'_>, welder: &mut Welder<'_>) -> Result<(), ReadError> {
+fn text(source: &mut Source<'_>, welder: &mut Welder) -> Result<(), ReadError> {
     let mut is_ended = false;
     loop {
         // The name of a solid may be any words.
@@ -92,7 +92,7 @@ fn text(source: &mut Source<'_>, welder: &mut Welder<'_>) -> Result<(), ReadErro
     }
 }
 
-fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder<'_>) -> Result<(), ReadError> {
+fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder) -> Result<(), ReadError> {
     let Some(count) = promised(bytes) else {
         return Err(content::no_beginning(bytes, Format::Stl, "`solid`, or the 84 bytes of a binary header"));
     };
@@ -126,12 +126,12 @@ fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder<'_>) -> Res
 }
 
 /// Makes one point of equal ones.
-struct Welder<'l> {
-    builder: Builder<'l>,
+struct Welder {
+    builder: Builder,
     known: HashMap<[u64; 3], u32>,
 }
 
-impl Welder<'_> {
+impl Welder {
     fn triangle(&mut self, corners: [DVec3; 3]) -> Result<(), ReadError> {
         let mut indices = [0; 3];
         for (index, corner) in indices.iter_mut().zip(corners) {

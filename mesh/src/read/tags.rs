@@ -48,7 +48,7 @@ impl Tags {
         point: DVec3,
         at: usize,
         source: &Source<'_>,
-        builder: &mut Builder<'_>,
+        builder: &mut Builder,
     ) -> Result<u32, ReadError> {
         let Some(index) = self.get(tag) else {
             let index = builder.point_at(point, at)?;

@@ -38,7 +38,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         _ => return Err(source.wrong(word, "`ASCII` or `BINARY`")),
     };
     let (cells, starts, of, rows, vectors) = Default::default();
-    let mut reader = Reader { source, coding, builder: Builder::new(limits), limits, cells, starts, of, rows, vectors };
+    let mut reader = Reader { source, coding, builder: Builder::new(limits), cells, starts, of, rows, vectors };
     while reader.section()? {}
     if reader.cells.is_some() {
         return Err(reader.source.ends("`CELL_TYPES`"));
@@ -50,11 +50,10 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     reader.builder.finish(&reader.source, 0)
 }
 
-struct Reader<'b, 'l> {
+struct Reader<'b> {
     source: Source<'b>,
     coding: Coding,
-    builder: Builder<'l>,
-    limits: &'l Limits,
+    builder: Builder,
     /// Cells whose types follow.
     cells: Option<Lists>,
     /// The first cell that each cell of the file became.
@@ -75,7 +74,7 @@ enum Of {
     Cells,
 }
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     /// Reads a section. Returns false at the end of the mesh.
     fn section(&mut self) -> Result<bool, ReadError> {
         let word = self.source.word();
@@ -84,8 +83,7 @@ impl Reader<'_, '_> {
                 let kind = self.source.word();
                 if !matches!(&*kind.to_ascii_uppercase(), b"UNSTRUCTURED_GRID" | b"POLYDATA") {
                     let message = self.source.wrong(kind, "`UNSTRUCTURED_GRID` or `POLYDATA`").message;
-                    let help = "write it as an unstructured grid: ParaView's filter `Append Datasets` makes one";
-                    return Err(ReadError::new(message, help));
+                    return Err(ReadError::new(message, kinds::AS_GRID));
                 }
             }
             b"POINTS" => self.points()?,
@@ -100,8 +98,10 @@ impl Reader<'_, '_> {
             b"TRIANGLE_STRIPS" => self.faces(6)?,
             b"METADATA" => self.metadata(),
             b"FIELD" => self.fields()?,
-            b"POINT_DATA" => self.data(Of::Points)?,
-            b"CELL_DATA" => self.data(Of::Cells)?,
+            keyword @ (b"POINT_DATA" | b"CELL_DATA") => {
+                self.rows = self.source.count(Scalar::I64, "the number of points or cells")?;
+                self.of = if keyword == b"POINT_DATA" { Of::Points } else { Of::Cells };
+            }
             b"" => return Ok(false),
             keyword if self.of != Of::All => return self.attribute(keyword, word),
             _ => return Err(self.source.wrong(word, "`POINTS`, `CELLS` or another section")),
@@ -129,13 +129,6 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Begins the arrays of points or of cells.
-    fn data(&mut self, of: Of) -> Result<(), ReadError> {
-        self.rows = self.source.count(Scalar::I64, "the number of points or cells")?;
-        self.of = of;
-        Ok(())
-    }
-
     fn scalar(&mut self) -> Result<Scalar, ReadError> {
         let word = self.source.word();
         Scalar::named(word).ok_or_else(|| self.source.wrong(word, "a type of numbers, such as `float`"))
@@ -143,7 +136,7 @@ impl Reader<'_, '_> {
 
     /// Reads lists of points in either layout, and the place where they begin.
     fn lists(&mut self) -> Result<(Lists, usize), ReadError> {
-        let most = 4 * self.limits.corners as u64;
+        let most = 4 * self.builder.most_corners as u64;
         let [first, second] = [(); 2].map(|()| self.source.count(Scalar::I64, "a number of cells"));
         let (first, second) = (first?, second?);
         if first.max(second) > most {
@@ -153,14 +146,13 @@ impl Reader<'_, '_> {
         if self.source.peek().eq_ignore_ascii_case(b"OFFSETS") {
             // One more offset than lists.
             self.source.word();
-            let mut offsets = Vec::new();
             let place = self.source.at;
-            self.numbers(first, &mut offsets)?;
+            let offsets = self.numbers(first)?;
             let word = self.source.word();
             if !word.eq_ignore_ascii_case(b"CONNECTIVITY") {
                 return Err(self.source.wrong(word, "`CONNECTIVITY`"));
             }
-            self.numbers(second, &mut lists.indices)?;
+            lists.indices = self.numbers(second)?;
             for offset in offsets.into_iter().skip(1) {
                 let before = lists.ends.last().copied().unwrap_or(0);
                 match usize::try_from(offset) {
@@ -184,7 +176,8 @@ impl Reader<'_, '_> {
     }
 
     /// Reads a type and so many integers of it.
-    fn numbers(&mut self, count: u64, numbers: &mut Vec<i64>) -> Result<(), ReadError> {
+    fn numbers(&mut self, count: u64) -> Result<Vec<i64>, ReadError> {
+        let mut numbers = Vec::new();
         let scalar = self.scalar()?;
         self.source.line();
         self.source.coding = self.coding;
@@ -192,7 +185,7 @@ impl Reader<'_, '_> {
             numbers.push(self.source.integer(scalar, "an index")?);
         }
         self.source.coding = Coding::Text;
-        Ok(())
+        Ok(numbers)
     }
 
     /// Cells that all have one type.

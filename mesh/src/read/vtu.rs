@@ -6,9 +6,9 @@ mod piece;
 mod polyhedra;
 
 use super::builder::Builder;
-use super::pvd::{attribute, unsound};
+use super::pvd::{attribute, check_type, unsound};
 use super::source::{CUT, Coding, DAMAGED, Scalar, Source, quoted};
-use super::{Cells, Format, Limits, ReadError, arrays, content};
+use super::{Cells, Format, Limits, ReadError, arrays, content, kinds};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::cell::Cell;
@@ -46,6 +46,7 @@ const ELEMENTS: [(&[u8], i64); 6] =
 /// How the arrays of a file are written.
 struct Layout<'b> {
     bytes: &'b [u8],
+    limits: &'b Limits,
     coding: Coding,
     /// The type of lengths before arrays.
     header: Scalar,
@@ -76,6 +77,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let most = limits.points.saturating_mul(9).saturating_add(limits.corners.saturating_mul(12));
     let mut layout = Layout {
         bytes,
+        limits,
         coding: Coding::Little,
         header: Scalar::U32,
         packer: String::new(),
@@ -84,7 +86,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         left: Cell::new(most),
     };
     let mut builder = Builder::new(limits);
-    pieces(&bytes[..begin.unwrap_or(bytes.len())], begin.is_some(), &mut layout, &mut builder, limits)?;
+    pieces(&bytes[..begin.unwrap_or(bytes.len())], begin.is_some(), &mut layout, &mut builder)?;
     builder.finish(&Source::text(bytes), 0)
 }
 
@@ -101,13 +103,7 @@ fn appended(bytes: &[u8]) -> Result<(&[u8], bool), ReadError> {
     Ok((&bytes[(begin + 1).max(tag + 1)..], is_raw))
 }
 
-fn pieces(
-    text: &[u8],
-    is_cut: bool,
-    layout: &mut Layout<'_>,
-    builder: &mut Builder<'_>,
-    limits: &Limits,
-) -> Result<(), ReadError> {
+fn pieces(text: &[u8], is_cut: bool, layout: &mut Layout<'_>, builder: &mut Builder) -> Result<(), ReadError> {
     let place = |at: u64| Source::text(text).place(at as usize);
     let mut reader = Reader::from_reader(text);
     let mut path: Vec<Vec<u8>> = Vec::new();
@@ -156,7 +152,7 @@ fn pieces(
                 path.pop();
                 match tag.local_name().as_ref().as_bytes() {
                     b"DataArray" => close(&mut open, &mut piece, before),
-                    b"Piece" => layout.piece(&std::mem::take(&mut piece), builder, limits)?,
+                    b"Piece" => layout.piece(&std::mem::take(&mut piece), builder)?,
                     b"VTKFile" => is_ended = true,
                     _ => {}
                 }
@@ -173,13 +169,7 @@ fn pieces(
 }
 
 fn header(tag: &BytesStart<'_>, layout: &mut Layout<'_>) -> Result<(), ReadError> {
-    let kind = attribute(tag, "type")?.unwrap_or_default();
-    if !matches!(&*kind, "UnstructuredGrid" | "PolyData") {
-        let found = quoted(kind.as_bytes());
-        let message = format!("is a VTK file of the type {found}; expected `UnstructuredGrid` or `PolyData`");
-        let help = "write it as an unstructured grid: ParaView's filter `Append Datasets` makes one";
-        return Err(ReadError::new(message, help));
-    }
+    check_type(tag, &["UnstructuredGrid", "PolyData"], kinds::AS_GRID)?;
     if attribute(tag, "byte_order")?.as_deref() == Some("BigEndian") {
         layout.coding = Coding::Big;
     }

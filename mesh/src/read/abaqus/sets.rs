@@ -2,10 +2,10 @@
 
 use super::keyword::Keyword;
 use super::{ELEMENTS, NODES, Reader, capitals, data, integer};
+use crate::read::ReadError;
 use crate::read::source::{DAMAGED, Source, quoted};
-use crate::read::{ReadError, builder};
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     pub(super) fn set(&mut self, kind: usize, keyword: &Keyword<'_>) -> Result<(), ReadError> {
         let name = keyword.needed(["NSET", "ELSET"][kind])?;
         let missing = |what: &str, name: &str, field: &Source<'_>| {
@@ -19,15 +19,16 @@ impl Reader<'_, '_> {
         let mut members = Vec::new();
         if let (NODES, Some(elements)) = (kind, keyword.get("ELSET")) {
             let elements = set(ELEMENTS, elements, &keyword.line)?;
-            let corners = &self.builder.cells.corners;
-            let count = elements.iter().map(|&element| corners[element as usize].len()).sum();
-            builder::spend(&mut self.spent, count, self.limits)?;
-            members.extend(elements.iter().flat_map(|&element| &corners[element as usize]));
+            for &element in elements {
+                let corners = &self.builder.cells.corners[element as usize];
+                members.extend(corners);
+                self.builder.spend(corners.len())?;
+            }
         }
         while let Some(line) = data(&mut self.source) {
             if keyword.parameters.contains_key("GENERATE") {
                 let [from, more, step] = generated(&line)?;
-                builder::spend(&mut self.spent, usize::try_from(more).unwrap_or(usize::MAX), self.limits)?;
+                self.builder.spend(usize::try_from(more).unwrap_or(usize::MAX))?;
                 members.extend((0..=more).filter_map(|at| self.tags[kind].get(from + at * step)));
                 continue;
             }
@@ -36,7 +37,7 @@ impl Reader<'_, '_> {
                 match word.parse().map(|number| self.tags[kind].get(number)) {
                     Err(_) => {
                         let others = set(kind, word.trim_matches('"'), &field)?;
-                        builder::spend(&mut self.spent, others.len(), self.limits)?;
+                        self.builder.spend(others.len())?;
                         members.extend(others);
                     }
                     // Its type may be one that is not read.

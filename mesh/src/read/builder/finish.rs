@@ -7,7 +7,7 @@ use super::{Builder, Ghost};
 use crate::Group;
 use std::ops::Range;
 
-impl Builder<'_> {
+impl Builder {
     /// Takes copies of cells out, with the points that are copies, and leaves out what is no part of the body.
     fn drop_ghosts(&mut self) {
         let [points, cells] = std::mem::take(&mut self.ghosts);
@@ -64,13 +64,7 @@ impl Builder<'_> {
         let count = self.cells.points.len();
         if !self.cells.corners.indices().is_empty() && self.highest.0 as usize >= count {
             let (index, place) = (u64::from(self.highest.0) + first, source.place(self.highest.1));
-            let message = match count {
-                0 => format!("names point {index} {place}, but has no points"),
-                _ => {
-                    format!("names point {index} {place}, but has points {first} to {}", count as u64 + first - 1)
-                }
-            };
-            return Err(ReadError::damaged(message));
+            return Err(beyond(format!("{index} {place}"), first, count as u64));
         }
         for (set, points) in std::mem::take(&mut self.numbered) {
             let kind = ["point", "curve", "surface", "volume"].get(set.0 as usize).copied().unwrap_or("group");
@@ -106,4 +100,13 @@ impl Builder<'_> {
         self.cells.groups = groups;
         Ok(self.cells)
     }
+}
+
+/// The error of a point that is not one of so many from a first one.
+pub(in crate::read) fn beyond(point: impl std::fmt::Display, first: u64, count: u64) -> ReadError {
+    let known = match count {
+        0 => "no points".to_owned(),
+        _ => format!("points {first} to {}", first + count - 1),
+    };
+    ReadError::damaged(format!("names point {point}, but has {known}"))
 }

@@ -4,7 +4,7 @@ use super::Reader;
 use crate::read::ReadError;
 use crate::read::source::{Coding, Scalar};
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     pub(super) fn old_nodes(&mut self) -> Result<(), ReadError> {
         let count = self.source.count(Scalar::I32, "the number of nodes")?;
         self.builder.expect(count, 0)?;

@@ -5,7 +5,7 @@ use crate::read::source::{Coding, Scalar, integer};
 use crate::read::{ReadError, arrays};
 use glam::DVec3;
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     /// Reads an array of points or cells. Returns false if it is none.
     pub(super) fn attribute(&mut self, keyword: &[u8], word: &[u8]) -> Result<bool, ReadError> {
         let columns = match keyword {

@@ -2,9 +2,9 @@
 
 use super::polyhedra::Polyhedra;
 use super::{Array, CELL_DATA, ELEMENTS, Layout, POINT_DATA, Piece};
-use crate::read::builder::{Builder, Ghost};
+use crate::read::builder::{Builder, Ghost, beyond};
 use crate::read::source::{Coding, DAMAGED, Source};
-use crate::read::{Limits, ReadError, arrays, kinds};
+use crate::read::{ReadError, arrays, kinds};
 use glam::DVec3;
 
 /// A point or a vector by its components, those in the plane with z = 0.
@@ -16,25 +16,24 @@ fn vector(array: &Array, mut next: impl FnMut() -> Result<f64, ReadError>) -> Re
 struct Reading<'r, 'b> {
     layout: &'r Layout<'b>,
     piece: &'r Piece,
-    limits: &'r Limits,
     first: usize,
     count: usize,
 }
 
 impl Layout<'_> {
-    pub(super) fn piece(&self, piece: &Piece, builder: &mut Builder<'_>, limits: &Limits) -> Result<(), ReadError> {
+    pub(super) fn piece(&self, piece: &Piece, builder: &mut Builder) -> Result<(), ReadError> {
         let first = builder.points();
         if let Some(((_, name), array)) = piece.iter().find(|((parent, _), _)| parent == b"Points") {
             let name = if name.is_empty() { b"Points" } else { &**name };
-            self.each(array, name, 3 * limits.points, |source| {
+            self.each(array, name, 3 * self.limits.points, |source| {
                 let at = if source.coding == Coding::Text { source.at } else { array.at };
                 builder.point_at(vector(array, || source.coordinate(array.scalar))?, at).map(drop)
             })?;
         }
-        let reading = Reading { layout: self, piece, limits, first, count: builder.points() - first };
-        reading.vectors(arrays::VELOCITY, "a velocity")?.into_iter().for_each(|all| builder.velocities(all));
+        let reading = Reading { layout: self, piece, first, count: builder.points() - first };
+        reading.vectors(arrays::VELOCITY, "a velocity", &mut builder.cells.velocities)?;
         let displacement = arrays::displacement(|name| reading.get(POINT_DATA, name).is_some());
-        reading.vectors(displacement, "a displacement")?.into_iter().for_each(|all| builder.displacements(all));
+        reading.vectors(displacement, "a displacement", &mut builder.cells.displacements)?;
         builder.ghosts(first, reading.ghosts(POINT_DATA, reading.count)?);
         let starts = reading.cells(builder)?;
         builder.ghosts_of_cells(&starts, &reading.ghosts(CELL_DATA, starts.len())?);
@@ -49,7 +48,7 @@ impl Reading<'_, '_> {
 
     fn integers(&self, parent: &[u8], name: &[u8]) -> Result<Vec<i64>, ReadError> {
         let array = self.get(parent, name);
-        array.map_or(Ok(Vec::new()), |array| self.layout.integers(array, name, 4 * self.limits.corners))
+        array.map_or(Ok(Vec::new()), |array| self.layout.integers(array, name, 4 * self.layout.limits.corners))
     }
 
     /// Refuses an array that has not one entry for each of the points or cells.
@@ -57,15 +56,17 @@ impl Reading<'_, '_> {
         arrays::check(&array.name, found, expected, of_cells, || Source::text(self.layout.bytes).place(array.at))
     }
 
-    fn vectors(&self, name: &[u8], expected: &str) -> Result<Option<Vec<DVec3>>, ReadError> {
-        let Some(array) = self.get(POINT_DATA, name) else { return Ok(None) };
+    /// Appends the vectors of the points, if there are some.
+    fn vectors(&self, name: &[u8], expected: &str, all: &mut Option<Vec<DVec3>>) -> Result<(), ReadError> {
+        let Some(array) = self.get(POINT_DATA, name) else { return Ok(()) };
         let mut vectors = Vec::new();
-        self.layout.each(array, &array.name, 3 * self.limits.points, |source| {
+        self.layout.each(array, &array.name, 3 * self.layout.limits.points, |source| {
             vectors.push(vector(array, || source.float(array.scalar, expected))?);
             Ok(())
         })?;
         self.check(array, vectors.len(), self.count, false)?;
-        Ok(Some(vectors))
+        all.get_or_insert_default().extend(vectors);
+        Ok(())
     }
 
     /// What tells ghosts, one for each point or for each of these cells of the file, if something does.
@@ -80,7 +81,7 @@ impl Reading<'_, '_> {
     }
 
     /// Adds the cells of all kinds. Returns the first of those that each cell of the file becomes.
-    fn cells(&self, builder: &mut Builder<'_>) -> Result<Vec<usize>, ReadError> {
+    fn cells(&self, builder: &mut Builder) -> Result<Vec<usize>, ReadError> {
         let of_cells = |name: &[u8]| self.integers(b"Cells", name);
         let polyhedra = Polyhedra {
             streams: of_cells(b"faces")?,
@@ -91,7 +92,11 @@ impl Reading<'_, '_> {
             cells: of_cells(b"polyhedron_offsets")?,
         };
         let corners = |list: &[i64]| -> Result<Vec<u32>, ReadError> {
-            list.iter().map(|&index| corner(index, self.first as i64, self.count as i64)).collect()
+            let corner = |&index: &i64| match usize::try_from(index) {
+                Ok(index) if index < self.count => Ok((self.first + index) as u32),
+                _ => Err(beyond(index, 0, self.count as u64)),
+            };
+            list.iter().map(corner).collect()
         };
         let mut starts = Vec::new();
         for &(parent, kind) in &ELEMENTS[1..] {
@@ -127,15 +132,4 @@ impl Reading<'_, '_> {
         }
         Ok(starts)
     }
-}
-
-/// A corner of a piece with so many points, which begin at `first`.
-fn corner(index: i64, first: i64, count: i64) -> Result<u32, ReadError> {
-    if (0..count).contains(&index) {
-        return Ok((index + first) as u32);
-    }
-    Err(ReadError::damaged(match count {
-        0 => format!("names point {index}, but has no points"),
-        _ => format!("names point {index}, but has points 0 to {}", count - 1),
-    }))
 }
