@@ -24,7 +24,7 @@ use winding::Caps;
 
 /// A surface that is asked for its inside.
 pub(crate) struct Inside {
-    columns: Columns,
+    pub(crate) columns: Columns,
     /// The triangles that close the surface; none for most.
     caps: Vec<[DVec3; 3]>,
     /// The same ones, or fewer that hide the same from each point.
@@ -75,11 +75,6 @@ impl Inside {
         all.min(64.0 * libm::log2(all.max(1.0)))
     }
 
-    /// How many triangles are looked at on average to tell which a line crosses.
-    pub(crate) fn crossed(&self) -> f64 {
-        self.columns.crowd()
-    }
-
     /// The triangles that were added to close the surface.
     pub(crate) fn caps(&self) -> &[[DVec3; 3]] {
         &self.caps
@@ -111,20 +106,14 @@ impl Inside {
     /// Whether each point is inside, with x fastest, then y, then z.
     pub(crate) fn grid(&self, grid: &Grid) -> Vec<bool> {
         let rows = (0..grid.counts[1] * grid.counts[2]).into_par_iter();
-        rows.flat_map_iter(|row| {
-            let mut out = Vec::new();
-            self.row(grid, row, &mut out);
-            out.into_iter().map(|(_, inside)| inside)
-        })
-        .collect()
+        rows.flat_map_iter(|row| self.row(grid, row).into_iter().map(|(_, inside)| inside)).collect()
     }
 
     /// The points of a row that are inside: for each point its winding number about the surface with its caps, and
-    /// whether it is inside the surface. The numbers replace those in `out`.
-    pub(crate) fn row(&self, grid: &Grid, row: usize, out: &mut Vec<(i32, bool)>) {
+    /// whether it is inside the surface.
+    pub(crate) fn row(&self, grid: &Grid, row: usize) -> Vec<(i32, bool)> {
         let [along, wide, _] = grid.counts;
-        out.clear();
-        out.resize(along, (0, false));
+        let mut out = vec![(0, false); along];
         let (y, z) = (grid.at(1, row % wide), grid.at(2, row / wide));
         self.columns.crossings(y, z, |crossing| {
             // The number of points before the crossing: about as many as this.
@@ -146,5 +135,6 @@ impl Inside {
             *winding = around;
             *inside = self.is_inside(around, DVec3::new(grid.at(0, at), y, z));
         }
+        out
     }
 }

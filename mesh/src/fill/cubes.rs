@@ -9,7 +9,7 @@ use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::DVec3;
-use localshape_sim::{IndexLists, Weights};
+use localshape_sim::Weights;
 use rayon::prelude::*;
 
 /// Points along each side of a cell at which it is tried whether they are inside, where a surface is open.
@@ -46,29 +46,15 @@ pub(super) fn fill(
     }
     let parts = scene.parts(&cells);
     let mut nodes = Nodes::new(parts.corners.len());
-    let mut volumes = None;
-    let (elements, filled, weights) = if is_graded {
-        let Graded { elements, filled, element_of, volumes: own } = graded::joined(&scene, &parts, &mut nodes);
-        volumes = Some(own.into_iter().map(|volume| volume * side * side * side).collect());
-        let weights = weights(&scene, &parts, &homes, |copy| &elements[element_of[copy] as usize]);
-        (elements, filled, weights)
-    } else {
-        let mut elements = IndexLists::default();
-        for (copy, full) in parts.copies.iter().enumerate() {
-            let cell = lattice.cell(full.cell);
-            elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|at| {
-                let place = || lattice.place(corner([0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis])));
-                nodes.of(parts.corners[8 * copy + at] as usize, place)
-            }));
-        }
-        let weights = weights(&scene, &parts, &homes, |copy| &elements[copy]);
-        (elements, parts.copies.iter().map(|full| full.filled).collect(), weights)
-    };
+    let Graded { elements, filled, element_of, volumes } = graded::joined(&scene, &parts, is_graded, &mut nodes);
     if elements.len() > most {
         return refuse(elements.len());
     }
+    let weights = weights(&scene, &parts, &homes, |copy| &elements[element_of[copy] as usize]);
+    let volumes = is_graded.then(|| volumes.into_iter().map(|volume| volume * side * side * side).collect());
     let overlap = overlap(&scene, &cells) * side * side * side;
-    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), volumes, overlap, ..Cage::default() };
+    let filled = filled.iter().any(|&filled| filled < 1.0).then_some(filled);
+    let cage = Cage { nodes: nodes.places, elements, filled, volumes, overlap, ..Cage::default() };
     Ok(Filled { cage, surface, weights, flaws })
 }
 
@@ -82,11 +68,6 @@ pub(super) fn overlap(scene: &Scene, cells: &[Parted]) -> f64 {
     let volume: f64 = scene.pieces.iter().map(volume).sum();
     let overlap = volume - cells.iter().map(|parted| parted.full.filled).sum::<f64>();
     if overlap > 1e-6 * volume { overlap } else { 0.0 }
-}
-
-/// The filled parts of elements, unless all are full.
-pub(super) fn in_part(filled: Vec<f64>) -> Option<Vec<f64>> {
-    filled.iter().any(|&filled| filled < 1.0).then_some(filled)
 }
 
 /// The cells whose middle is inside a surface or that its triangles touch, in rising order, and how much of each is
@@ -126,7 +107,7 @@ fn check_shells(scene: &Scene, begun: &[(Parted, Option<Patches>)]) -> Result<()
     if all().map(|patches| patches.effort(scene.inside)).sum::<f64>() <= MOST {
         return Ok(());
     }
-    let patches: usize = all().map(Patches::count).sum();
+    let patches: usize = all().map(|patches| patches.count).sum();
     let message =
         format!("has {patches} separate parts of its surface in single cells, too many to tell what each bounds");
     Err(FillError::new(message, "unite its shells in the program that made it, or use a larger side"))
@@ -148,11 +129,9 @@ fn row_cells<'s>(scene: &Scene<'s>, row: usize, capped: &'s [Piece]) -> Vec<(Par
     let Scene { inside, lattice, pieces, .. } = *scene;
     let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
     let along = grid.counts[0];
-    let mut middles = Vec::new();
-    inside.row(&grid, row, &mut middles);
     let (mut pieces, mut capped) = [pieces, capped].map(|pieces| of(pieces, row * along, along)).into();
     let (mut cells, mut shadow) = (Vec::new(), 0.0);
-    for (at, &(around, is_inside)) in middles.iter().enumerate().rev() {
+    for (at, (around, is_inside)) in inside.row(&grid, row).into_iter().enumerate().rev() {
         let key = row * along + at;
         let [own, own_caps] = [&mut pieces, &mut capped].map(|rest| {
             let start = rest.partition_point(|piece| piece.cell < key as u64);

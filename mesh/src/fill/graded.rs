@@ -1,6 +1,6 @@
-//! Cubes that are coarser away from the surface.
+//! The cubes of cells, which may be coarser away from the surface.
 //!
-//! Eight cells without surface are joined to one cube. It lists the nodes of smaller neighbours that hang in the middles of its
+//! Then eight cells without surface are joined to one cube. It lists the nodes of smaller neighbours that hang in the middles of its
 //! faces and edges: to the shape model they are nodes like others. The surface is in the smaller cubes alone, where its weights are
 //! those of plain cubes.
 //!
@@ -32,6 +32,7 @@ impl Cube {
 }
 
 /// Elements made of copies, the part of each that is inside, and the element of each copy that touches the surface.
+#[derive(Default)]
 pub(super) struct Graded {
     pub(super) elements: IndexLists,
     pub(super) filled: Vec<f64>,
@@ -40,10 +41,10 @@ pub(super) struct Graded {
     pub(super) volumes: Vec<f64>,
 }
 
-/// Joins cells.
-pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded {
+/// Makes a cube of each copy, with some joined if they are graded.
+pub(super) fn joined(scene: &Scene, parts: &Parts, is_graded: bool, nodes: &mut Nodes) -> Graded {
     let lattice = scene.lattice;
-    let cubes = leaves(scene, parts);
+    let cubes = leaves(scene, parts, is_graded);
     // All corners of cubes are nodes.
     let mut is_node = vec![false; parts.corners.len()];
     let set = |cube: &Cube, at: Cell| set(lattice, parts, cube, at);
@@ -52,12 +53,7 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
             is_node[set(cube, corner.map(|end| 2 * end)) as usize] = true;
         }
     }
-    let mut graded = Graded {
-        elements: IndexLists::default(),
-        filled: vec![],
-        element_of: vec![0; parts.copies.len()],
-        volumes: vec![],
-    };
+    let mut graded = Graded { element_of: vec![0; parts.copies.len()], ..Graded::default() };
     for cube in &cubes {
         let mut own = Vec::with_capacity(8);
         let mut push = |at: Cell| {
@@ -120,12 +116,12 @@ fn set(lattice: &Lattice, parts: &Parts, cube: &Cube, at: Cell) -> u32 {
 }
 
 /// The cubes, by their lowest cell.
-fn leaves(scene: &Scene, parts: &Parts) -> Vec<Cube> {
+fn leaves(scene: &Scene, parts: &Parts, is_graded: bool) -> Vec<Cube> {
     let lattice = scene.lattice;
     let block = |cell: Cell| lattice.key(cell.map(|at| at / 2));
     let mut touched = scene.pieces.iter().map(|piece| piece.cell).peekable();
     let mut free: HashMap<u64, u32> = HashMap::new();
-    for full in &parts.copies {
+    for full in parts.copies.iter().filter(|_| is_graded) {
         while touched.next_if(|&cell| cell < full.cell).is_some() {}
         if touched.peek() != Some(&full.cell) {
             *free.entry(block(lattice.cell(full.cell))).or_default() += 1;

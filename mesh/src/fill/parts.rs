@@ -62,7 +62,7 @@ pub(super) struct Patches<'s> {
     pieces: &'s [Piece],
     /// The patch of each piece.
     of: Vec<u32>,
-    count: usize,
+    pub(super) count: usize,
     /// Whether more than two pieces meet in an edge.
     folded: bool,
     /// Whether the volume of the inside is known, and not only tried at points.
@@ -70,10 +70,6 @@ pub(super) struct Patches<'s> {
 }
 
 impl Patches<'_> {
-    pub(super) fn count(&self) -> usize {
-        self.count
-    }
-
     /// About how often it is asked whether a line meets a triangle to tell what the patches bound.
     pub(super) fn effort(&self, inside: &Inside) -> f64 {
         Tangle::effort(self.pieces.len(), inside) + Sight::effort(self.pieces.len(), self.count)
@@ -82,19 +78,19 @@ impl Patches<'_> {
 
 /// The parts of the inside in one cell.
 #[derive(Clone, Debug)]
-struct Local {
+pub(super) struct Local {
     /// The part that each piece of the surface bounds.
-    part_of: Vec<u32>,
+    pub(super) part_of: Vec<u32>,
     /// The volume of each part, in cells.
-    volumes: Vec<f64>,
+    pub(super) volumes: Vec<f64>,
     /// The part at the middle of each face, if one is there: low and high along x, y and z. Of a single part it is not tried.
-    faces: [Option<u32>; 6],
+    pub(super) faces: [Option<u32>; 6],
     /// Whether the surface is open in the cell, so that it has one part.
-    open: bool,
+    pub(super) open: bool,
 }
 
 impl Local {
-    fn whole(pieces: usize, volume: f64, open: bool) -> Self {
+    pub(super) fn whole(pieces: usize, volume: f64, open: bool) -> Self {
         Self { part_of: vec![0; pieces], volumes: vec![volume], faces: [Some(0); 6], open }
     }
 }
@@ -150,33 +146,31 @@ impl<'s> Scene<'s> {
         let low = corner(self.lattice.cell(cell));
         let facets: Vec<_> = pieces.iter().map(|piece| Facet::new(self.corners(piece), low)).collect();
         let tangle = if certain { Tangle::new(self.inside, &facets, patch_of, folded) } else { None };
-        let seen = Sight::new(&facets, patch_of, low, tangle.as_ref()).parts(count);
-        if seen.count == 1 && tangle.is_none() {
+        let mut local = Sight::new(&facets, (patch_of, count), low, tangle.as_ref()).parts();
+        if local.volumes.len() == 1 && tangle.is_none() {
             return whole;
         }
-        let mut volumes = vec![0.0; seen.count];
         match &tangle {
             Some(tangle) => tangle.fragments.iter().for_each(|fragment| {
-                volumes[seen.part_of[fragment.facet] as usize] +=
+                local.volumes[local.part_of[fragment.facet] as usize] +=
                     fragment.bounding * clip::volume(&fragment.corners, low);
             }),
-            None => facets.iter().zip(&seen.part_of).for_each(|(facet, &part)| {
-                volumes[part as usize] += clip::volume(facet.piece.corners(), low);
+            None => facets.iter().zip(&local.part_of).for_each(|(facet, &part)| {
+                local.volumes[part as usize] += clip::volume(facet.piece.corners(), low);
             }),
         }
-        self.give_corner(&mut volumes, low + 1.0);
-        volumes.iter_mut().for_each(|volume| *volume = bounded(*volume));
-        let sum: f64 = volumes.iter().sum();
+        self.give_corner(&mut local.volumes, low + 1.0);
+        local.volumes.iter_mut().for_each(|volume| *volume = bounded(*volume));
+        let sum: f64 = local.volumes.iter().sum();
         if tangle.is_none() && (sum - volume).abs() > 1e-6 * volume {
             if certain && (sum - volume).abs() > CLOSE {
                 // A part was not seen as one. Together they have the volume that is known.
                 return whole;
             }
             // The surface is open nearby.
-            volumes.iter_mut().for_each(|own| *own *= volume / sum);
+            local.volumes.iter_mut().for_each(|own| *own *= volume / sum);
         }
-        let full = Full { cell, filled: volumes.iter().sum() };
-        Parted { full, local: Some(Local { part_of: seen.part_of, volumes, faces: seen.faces, open: false }) }
+        Parted { full: Full { cell, filled: local.volumes.iter().sum() }, local: Some(local) }
     }
 
     /// Adds a whole cell to the part that contains the highest corner of the cell, if one does. Its volume is known but for this one.

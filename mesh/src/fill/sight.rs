@@ -1,30 +1,29 @@
 //! What sees what in a cell: which patches of the surface bound the same part of the inside.
 
 use super::facet::Facet;
+use super::parts::Local;
 use super::union::Tangle;
 use crate::edges::Sets;
 use glam::DVec3;
 use std::ops::Range;
 
-/// What sees what in a cell.
+/// What sees what in a cell, and what is known so far of the parts that patches bound.
 pub(super) struct Sight<'f> {
     facets: &'f [Facet],
+    /// The patch of each facet, and how many patches there are.
     patch_of: &'f [u32],
+    patches: usize,
     low: DVec3,
-    /// The shells that cross or lie in each other.
-    tangle: Option<&'f Tangle>,
-    /// Whether each facet bounds the inside, at least in part; and the facets that do.
+    /// Whether each facet bounds the inside, at least in part.
     is_seen: Vec<bool>,
-    seen: Vec<usize>,
-}
-
-/// The parts of the inside that patches bound.
-pub(super) struct Seen {
-    /// The part of each facet.
-    pub(super) part_of: Vec<u32>,
-    pub(super) count: usize,
-    /// The part at the middle of each face, if one is there: low and high along x, y and z.
-    pub(super) faces: [Option<u32>; 6],
+    /// The largest piece of each patch, or of its pieces that are seen: of patches that are seen, and of others.
+    targets: Vec<usize>,
+    hidden: Vec<usize>,
+    /// Lookouts, at last those on patches that are not seen, which are inside.
+    lookouts: Vec<DVec3>,
+    is_inside: Vec<bool>,
+    /// What bounds or sees one part: patches, then lookouts.
+    sets: Sets,
 }
 
 /// Hits nearer than this are where a line begins, in sides of the cell.
@@ -39,13 +38,38 @@ const FACES: [usize; 6] = [12, 14, 10, 16, 4, 22];
 const LOOKS: usize = 8;
 
 impl<'f> Sight<'f> {
-    pub(super) fn new(facets: &'f [Facet], patch_of: &'f [u32], low: DVec3, tangle: Option<&'f Tangle>) -> Self {
+    /// The facets of so many patches in the cell with this lowest corner, and those of them that cross or lie in each other.
+    pub(super) fn new(
+        facets: &'f [Facet],
+        (patch_of, patches): (&'f [u32], usize),
+        low: DVec3,
+        tangle: Option<&Tangle>,
+    ) -> Self {
         let mut is_seen = vec![tangle.is_none(); facets.len()];
         for fragment in tangle.iter().flat_map(|tangle| &tangle.fragments) {
             is_seen[fragment.facet] |= fragment.bounding != 0.0;
         }
-        let seen = (0..facets.len()).filter(|&at| is_seen[at]).collect();
-        Self { facets, patch_of, low, tangle, is_seen, seen }
+        let mut largest = vec![None::<usize>; patches];
+        let rank = |at: usize| (is_seen[at], facets[at].area);
+        for (at, &patch) in patch_of.iter().enumerate() {
+            let best = &mut largest[patch as usize];
+            if best.is_none_or(|best| rank(at) > rank(best)) {
+                *best = Some(at);
+            }
+        }
+        let (targets, hidden): (Vec<_>, Vec<_>) = largest.into_iter().flatten().partition(|&at| is_seen[at]);
+        let places = (0..PLACES).map(|at| DVec3::new(LOOKOUTS[at % 3], LOOKOUTS[at / 3 % 3], LOOKOUTS[at / 9]));
+        let places = places.map(|place| low + place);
+        let lookouts: Vec<DVec3> = places.chain(hidden.iter().map(|&at| facets[at].middle)).collect();
+        let mut sets = Sets::new(patches + lookouts.len());
+        for &[one, other] in tangle.iter().flat_map(|tangle| &tangle.joined) {
+            sets.join(patch_of[one], patch_of[other]);
+        }
+        for (&at, place) in hidden.iter().zip((patches + PLACES) as u32..) {
+            sets.join(patch_of[at], place);
+        }
+        let is_inside = vec![false; lookouts.len()];
+        Self { facets, patch_of, patches, low, is_seen, targets, hidden, lookouts, is_inside, sets }
     }
 
     /// About how often a line is tried with a facet to find the parts that so many patches bound.
@@ -57,7 +81,7 @@ impl<'f> Sight<'f> {
     /// The nearest facet along a line, up to its end, apart from one.
     fn first(&self, from: DVec3, along: DVec3, apart: usize) -> Option<usize> {
         let near = NEAR / along.length();
-        let hits = self.seen.iter().copied().filter(|&at| at != apart);
+        let hits = (0..self.facets.len()).filter(|&at| self.is_seen[at] && at != apart);
         let hits = hits.filter_map(|at| self.facets[at].hit(from, along).map(|hit| (hit, at)));
         let hits = hits.filter(|&(hit, _)| hit > near && hit < 1.0 + near);
         hits.reduce(|best, other| if other.0 < best.0 { other } else { best }).map(|(_, at)| at)
@@ -75,79 +99,38 @@ impl<'f> Sight<'f> {
         along * reach.max(0.0)
     }
 
-    /// The parts that so many patches bound.
-    pub(super) fn parts(&self, patches: usize) -> Seen {
-        let mut search = Search::new(self, patches);
-        search.look_inwards();
+    /// The parts that the patches bound, without their volumes.
+    pub(super) fn parts(mut self) -> Local {
+        self.look_inwards();
         // Patches that are not seen, and see others, are looked from only where there may be several parts.
-        for places in [0..PLACES, PLACES..search.lookouts.len()] {
-            search.look_around(places.clone());
-            search.join_lookouts(places);
-            if search.is_one() {
-                return Seen { part_of: vec![0; self.facets.len()], count: 1, faces: [Some(0); 6] };
+        for places in [0..PLACES, PLACES..self.lookouts.len()] {
+            self.look_around(places.clone());
+            self.join_lookouts(places);
+            if self.is_one() {
+                return Local::whole(self.facets.len(), 0.0, false);
             }
         }
-        search.join_hidden();
-        search.seen()
-    }
-}
-
-/// What is known so far of the parts that patches bound.
-struct Search<'s, 'f> {
-    sight: &'s Sight<'f>,
-    patches: usize,
-    /// The largest piece of each patch, or of its pieces that are seen: of patches that are seen, and of others.
-    targets: Vec<usize>,
-    hidden: Vec<usize>,
-    /// Lookouts, at last those on patches that are not seen, which are inside.
-    lookouts: Vec<DVec3>,
-    is_inside: Vec<bool>,
-    /// What bounds or sees one part: patches, then lookouts.
-    sets: Sets,
-}
-
-impl<'s, 'f> Search<'s, 'f> {
-    fn new(sight: &'s Sight<'f>, patches: usize) -> Self {
-        let mut largest = vec![None::<usize>; patches];
-        let rank = |at: usize| (sight.is_seen[at], sight.facets[at].area);
-        for (at, &patch) in sight.patch_of.iter().enumerate() {
-            let best = &mut largest[patch as usize];
-            if best.is_none_or(|best| rank(at) > rank(best)) {
-                *best = Some(at);
-            }
-        }
-        let (targets, hidden): (Vec<_>, Vec<_>) = largest.into_iter().flatten().partition(|&at| sight.is_seen[at]);
-        let places = (0..PLACES).map(|at| DVec3::new(LOOKOUTS[at % 3], LOOKOUTS[at / 3 % 3], LOOKOUTS[at / 9]));
-        let places = places.map(|place| sight.low + place);
-        let lookouts: Vec<DVec3> = places.chain(hidden.iter().map(|&at| sight.facets[at].middle)).collect();
-        let mut sets = Sets::new(patches + lookouts.len());
-        for &[one, other] in sight.tangle.iter().flat_map(|tangle| &tangle.joined) {
-            sets.join(sight.patch_of[one], sight.patch_of[other]);
-        }
-        for (&at, place) in hidden.iter().zip((patches + PLACES) as u32..) {
-            sets.join(sight.patch_of[at], place);
-        }
-        let is_inside = vec![false; lookouts.len()];
-        Self { sight, patches, targets, hidden, lookouts, is_inside, sets }
+        self.join_hidden();
+        self.seen()
     }
 
     /// Joins patches with those that some of their pieces see inwards.
     fn look_inwards(&mut self) {
-        let Sight { facets, patch_of, is_seen, .. } = self.sight;
+        let (facets, patch_of) = (self.facets, self.patch_of);
         let mut sizes = vec![0usize; self.patches];
         patch_of.iter().for_each(|&patch| sizes[patch as usize] += 1);
         let mut numbers = vec![0usize; self.patches];
-        for (at, (facet, &patch)) in facets.iter().zip(*patch_of).enumerate() {
+        for (at, (facet, &patch)) in facets.iter().zip(patch_of).enumerate() {
             let number = numbers[patch as usize];
             numbers[patch as usize] += 1;
             let is_chosen =
                 || number.is_multiple_of(sizes[patch as usize].div_ceil(LOOKS)) || self.targets.contains(&at);
-            if !is_seen[at] || !is_chosen() {
+            if !self.is_seen[at] || !is_chosen() {
                 continue;
             }
-            let along = self.sight.to_side(facet.middle, -facet.normal);
+            let along = self.to_side(facet.middle, -facet.normal);
             if along.length_squared() > 0.0
-                && let Some(hit) = self.sight.first(facet.middle, along, at)
+                && let Some(hit) = self.first(facet.middle, along, at)
             {
                 self.sets.join(patch, patch_of[hit]);
             }
@@ -156,10 +139,10 @@ impl<'s, 'f> Search<'s, 'f> {
 
     /// Tells which of some lookouts are inside, and joins these with the patches that they see.
     fn look_around(&mut self, places: Range<usize>) {
-        let Sight { facets, patch_of, .. } = self.sight;
+        let (facets, patch_of) = (self.facets, self.patch_of);
         for place in places {
             let from = self.lookouts[place];
-            let towards = |&target: &usize| self.sight.first(from, facets[target].middle - from, usize::MAX);
+            let towards = |&target: &usize| self.first(from, facets[target].middle - from, usize::MAX);
             let sights: Vec<usize> = self.targets.iter().filter_map(towards).collect();
             // A facet seen from behind is seen through the inside.
             let is_behind = |&hit: &usize| facets[hit].normal.dot(facets[hit].corners[0] - from) > 0.0;
@@ -177,7 +160,7 @@ impl<'s, 'f> Search<'s, 'f> {
                 let [a, b] = [one, other].map(|place| (self.patches + place) as u32);
                 if self.sets.of(a) != self.sets.of(b) {
                     let (from, to) = (self.lookouts[one], self.lookouts[other]);
-                    if self.sight.first(from, to - from, usize::MAX).is_none() {
+                    if self.first(from, to - from, usize::MAX).is_none() {
                         self.sets.join(a, b);
                     }
                 }
@@ -187,14 +170,14 @@ impl<'s, 'f> Search<'s, 'f> {
 
     /// Whether all patches that are seen bound one part.
     fn is_one(&mut self) -> bool {
-        let mut parts = self.targets.iter().map(|&target| self.sets.of(self.sight.patch_of[target]));
+        let mut parts = self.targets.iter().map(|&target| self.sets.of(self.patch_of[target]));
         let first = parts.next();
         parts.all(|part| Some(part) == first)
     }
 
     /// Joins patches from which nothing is seen, which are in the midst of a part, with the first part.
     fn join_hidden(&mut self) {
-        let patch_of = self.sight.patch_of;
+        let patch_of = self.patch_of;
         for &at in &self.hidden {
             let own = self.sets.of(patch_of[at]);
             if !self.targets.iter().any(|&target| self.sets.of(patch_of[target]) == own) {
@@ -203,12 +186,12 @@ impl<'s, 'f> Search<'s, 'f> {
         }
     }
 
-    fn seen(self) -> Seen {
+    fn seen(self) -> Local {
         let (part_of, _) = self.sets.numbered();
         // Each part has a patch, whose number is lower than that of a lookout: parts are counted by patches.
         let count = part_of[..self.patches].iter().max().map_or(1, |most| *most as usize + 1);
         let faces = FACES.map(|place| self.is_inside[place].then(|| part_of[self.patches + place]));
-        let part_of = self.sight.patch_of.iter().map(|&patch| part_of[patch as usize]).collect();
-        Seen { part_of, count, faces }
+        let part_of = self.patch_of.iter().map(|&patch| part_of[patch as usize]).collect();
+        Local { part_of, volumes: vec![0.0; count], faces, open: false }
     }
 }

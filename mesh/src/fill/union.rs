@@ -30,7 +30,7 @@ impl Tangle {
     /// About how often facets are compared with each other, and with a line.
     pub(super) fn effort(facets: usize, inside: &Inside) -> f64 {
         let fragments = facets * facets.min(MOST);
-        (facets * facets) as f64 + 2.0 * fragments as f64 * inside.crossed()
+        (facets * facets) as f64 + 2.0 * fragments as f64 * inside.columns.crowd()
     }
 
     /// The tangle of facets, or `None` if all of them bound the inside. Facets of one patch are compared only if `folded` says that more

@@ -39,7 +39,7 @@ impl Columns {
     }
 
     /// How many triangles are in a cell on average.
-    pub(super) fn crowd(&self) -> f64 {
+    pub(crate) fn crowd(&self) -> f64 {
         let (sum, count) = self.boxes.in_cells().fold((0, 0), |(sum, count), all| (sum + all.len(), count + 1));
         sum as f64 / f64::from(count)
     }
