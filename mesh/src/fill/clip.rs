@@ -58,11 +58,7 @@ impl Polygon {
     /// The normal with twice the polygon's area as its length.
     pub(super) fn area(&self) -> DVec3 {
         let origin = self.corners[0];
-        self.fan().map(|[b, c]| (b - origin).cross(c - origin)).sum()
-    }
-
-    fn fan(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
-        fan(self.corners())
+        fan(self.corners()).map(|[b, c]| (b - origin).cross(c - origin)).sum()
     }
 
     /// The parts between neighbouring planes across an axis, with the numbers of the cells between them. What lies in a

@@ -110,23 +110,21 @@ struct Cutting<'l> {
     cuts: &'l Cuts,
     /// How often each cube, by its lowest corner, was found to hold parts of the surface that are far from all elements.
     thin: &'l [u8],
-    inner: Inner,
+    /// Nodes in faces and cubes, in the order of these.
+    inner: Vec<Inner>,
 }
 
 impl<'l> Cutting<'l> {
     fn new(lattice: &'l Lattice, places: &'l [Where], is_inside: &'l [bool], cuts: &'l Cuts, thin: &'l [u8]) -> Self {
-        let mut cutting = Self { lattice, places, is_inside, cuts, thin, inner: Inner::default() };
+        let mut cutting = Self { lattice, places, is_inside, cuts, thin, inner: Vec::new() };
         if thin.iter().any(|&thin| thin > 0) {
             let found = cutting.candidates();
             let (faces, cubes): (Vec<_>, Vec<_>) =
                 found.chunk_by(|one, other| one.0 == other.0).partition(|of| of[0].0 % 4 < 3);
             for of in [faces, cubes] {
                 let made: Vec<_> = of.into_par_iter().flat_map_iter(|of| cutting.extremes(of)).collect();
-                let mut all: Vec<_> =
-                    cutting.inner.keys.iter().copied().zip(cutting.inner.nodes.iter().copied()).collect();
-                all.extend(made);
-                all.sort_by_key(|&(key, _)| key);
-                (cutting.inner.keys, cutting.inner.nodes) = all.into_iter().unzip();
+                cutting.inner.extend(made);
+                cutting.inner.sort_by_key(|&(key, _)| key);
             }
         }
         cutting
@@ -147,14 +145,14 @@ impl<'l> Cutting<'l> {
         let inner = |node: usize| self.lattice.len() + self.cuts.parts.len() + node;
         let index = self.lattice.index(low);
         match across {
-            Some(axis) => nodes.extend(self.inner.of(index, axis).map(inner)),
+            Some(axis) => nodes.extend(self.inner_of(index, axis).map(inner)),
             None => {
                 for (axis, beyond) in EDGES[..AXES].iter().enumerate() {
                     for of in [index, self.lattice.index(low + beyond)] {
-                        nodes.extend(self.inner.of(of, axis).map(inner));
+                        nodes.extend(self.inner_of(of, axis).map(inner));
                     }
                 }
-                nodes.extend(self.inner.of(index, 3).map(inner));
+                nodes.extend(self.inner_of(index, 3).map(inner));
             }
         }
     }
@@ -193,7 +191,7 @@ impl<'l> Cutting<'l> {
         let Some(inner) = cut.checked_sub(self.cuts.parts.len()) else {
             return self.lattice.along(self.cuts, cut, self.part(cut));
         };
-        self.inner.nodes[inner]
+        self.inner[inner].1
     }
 
     /// The part of the way along its edge at which a cut is. Two cuts of an edge are moved apart if they are close to each other.
@@ -218,8 +216,7 @@ impl<'l> Cutting<'l> {
 
     /// The elements; if they are alone, those that are small, too.
     fn elements(&self, filled: Option<&[f64]>, most: usize, is_alone: bool) -> Result<Draft, usize> {
-        let mut drafting =
-            Drafting::new(true, self.lattice.len() + self.cuts.parts.len() + self.inner.nodes.len(), most);
+        let mut drafting = Drafting::new(true, self.lattice.len() + self.cuts.parts.len() + self.inner.len(), most);
         let mut nodes = Vec::new();
         for cube in 0..self.lattice.cubes.element_product() {
             let low = self.lattice.lowest(cube);

@@ -18,14 +18,14 @@ pub(super) struct Simplex {
 /// A simplex that carries a point, and the weights of its corners.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    pub(super) element: u32,
-    pub(super) corners: [u32; 4],
+    pub(super) simplex: Simplex,
     pub(super) weights: [f64; 4],
     /// The distance of the point from the element, in sides.
     pub(super) distance: f64,
 }
 
 /// Elements divided into tetrahedra.
+#[derive(Default)]
 pub(super) struct Fan {
     /// The positions of nodes, then of means (m).
     pub(super) points: Vec<DVec3>,
@@ -43,14 +43,7 @@ pub(super) struct Fan {
 
 impl Fan {
     pub(super) fn new(body: &Body) -> Self {
-        let mut fan = Self {
-            points: body.rest().to_vec(),
-            means: IndexLists::default(),
-            nodes: body.rest().len(),
-            simplices: Vec::new(),
-            starts: Vec::new(),
-            outside: Vec::new(),
-        };
+        let mut fan = Self { points: body.rest().to_vec(), nodes: body.rest().len(), ..Self::default() };
         let is_simple = |element: u32| body.kinds()[element as usize] == ElementKind::Tetrahedron;
         let mut middles = vec![u32::MAX; body.elements().len()];
         for (element, nodes) in (0u32..).zip(body.elements().iter()) {
@@ -127,7 +120,7 @@ impl Fan {
                 })
             });
             if let Some((simplex, weights)) = containing {
-                return Some(Place { element: simplex.element, corners: simplex.corners, weights, distance: 0.0 });
+                return Some(Place { simplex, weights, distance: 0.0 });
             }
             let of_face = |face: u32| {
                 let [_, a, b, c] = self.corners(&self.outside[face as usize]);
@@ -136,7 +129,7 @@ impl Fan {
             let (face, distance) = faces.nearest(of_face, point, most * side)?;
             let simplex = self.outside[face as usize];
             let weights = weights(self.corners(&simplex), point);
-            Some(Place { element: simplex.element, corners: simplex.corners, weights, distance: distance / side })
+            Some(Place { simplex, weights, distance: distance / side })
         };
         // Points of one cell are close to the same elements, which are fast to get at one after the other.
         let mut order: Vec<usize> = (0..points.len()).collect();

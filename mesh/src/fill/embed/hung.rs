@@ -27,7 +27,7 @@ impl Hung {
             }
         }
         let (parts, _) = sets.numbered();
-        let part = |place: &Place| parts[place.element as usize];
+        let part = |place: &Place| parts[place.simplex.element as usize];
         let mut all: Vec<[u32; 2]> =
             pieces.iter().zip(found).filter_map(|(&piece, place)| Some([piece, part(place.as_ref()?)])).collect();
         all.sort_unstable();
@@ -42,7 +42,7 @@ impl Hung {
 
     /// Whether a place belongs to the part that carries a piece of the surface.
     pub(super) fn carries(&self, place: &Place, piece: u32) -> bool {
-        self.carriers[piece as usize] == self.parts[place.element as usize]
+        self.carriers[piece as usize] == self.parts[place.simplex.element as usize]
     }
 
     /// The elements of the parts that carry something, and the weights.
@@ -65,7 +65,7 @@ impl Hung {
         let filled = filled.map(|filled| kept.iter().map(|&element| filled[element]).collect());
         let spread = |place: &Place| {
             let is_gentle = place.weights.iter().all(|weight| weight.abs() < GENTLE);
-            let is_simple = fan.of(place.element as usize).len() == 1;
+            let is_simple = fan.of(place.simplex.element as usize).len() == 1;
             if is_gentle || is_simple { fan.spread(place) } else { fan.affine(place) }
         };
         let mut weights = Weights::default();

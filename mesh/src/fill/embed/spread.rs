@@ -8,9 +8,14 @@ impl Fan {
     /// The nodes of the element of a place and the weight of each: the least that reproduce affine maps. They are gentle also where a
     /// tetrahedron of the element is flat.
     pub(super) fn affine(&self, place: &Place) -> (Vec<u32>, Vec<f64>) {
-        let at: DVec3 =
-            place.corners.iter().zip(&place.weights).map(|(&at, weight)| self.points[at as usize] * *weight).sum();
-        let corners = self.of(place.element as usize).iter().flat_map(|simplex| simplex.corners);
+        let at: DVec3 = place
+            .simplex
+            .corners
+            .iter()
+            .zip(&place.weights)
+            .map(|(&at, weight)| self.points[at as usize] * *weight)
+            .sum();
+        let corners = self.of(place.simplex.element as usize).iter().flat_map(|simplex| simplex.corners);
         let nodes: BTreeSet<u32> = corners.filter(|&corner| (corner as usize) < self.nodes).collect();
         let nodes: Vec<u32> = nodes.into_iter().collect();
         let places = || nodes.iter().map(|&node| self.points[node as usize]);
@@ -35,7 +40,7 @@ impl Fan {
                 of_nodes.push(weight);
             }
         };
-        for (&corner, &weight) in place.corners.iter().zip(&place.weights) {
+        for (&corner, &weight) in place.simplex.corners.iter().zip(&place.weights) {
             match (corner as usize).checked_sub(self.nodes) {
                 None => add(corner, weight),
                 Some(mean) => {

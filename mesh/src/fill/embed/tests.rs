@@ -15,7 +15,7 @@ fn cage() -> Cage {
 /// The weight of each node.
 fn dense(fan: &Fan, simplex: &Simplex, point: DVec3) -> Vec<f64> {
     let weights = weights(fan.corners(simplex), point);
-    let place = Place { element: simplex.element, corners: simplex.corners, weights, distance: 0.0 };
+    let place = Place { simplex: *simplex, weights, distance: 0.0 };
     let mut all = vec![0.0; fan.nodes];
     let (nodes, own) = fan.spread(&place);
     nodes.iter().zip(own).for_each(|(&node, weight)| all[node as usize] += weight);
@@ -51,7 +51,8 @@ fn points_follow_the_first_element_that_holds_them_or_the_nearest() {
     let at = |x: f64, y: f64| DVec3::new(x, y, 0.5);
     let points = [at(0.5, 0.5), at(1.0, 0.5), at(1.3, 0.5), at(1.3, -0.4), at(1.3, -0.9), at(1.3, -9.0)];
     let found = fan.locate(&points, 1.0, VERY_FAR);
-    let elements: Vec<_> = found.iter().map(|place| place.map(|place| (place.element, place.distance > FAR))).collect();
+    let elements: Vec<_> =
+        found.iter().map(|place| place.map(|place| (place.simplex.element, place.distance > FAR))).collect();
     let expected = [(0, false), (0, false), (1, false), (1, false), (1, true)];
     assert_eq!(elements[..5], expected.map(Some));
     assert_eq!(elements[5], None);
@@ -66,5 +67,5 @@ fn the_nearest_face_may_lie_in_a_later_ring() {
     let elements = [&[0, 1, 2, 3][..], &[4, 5, 6, 7]].into_iter().collect();
     let body = body(&Cage { nodes, elements, convex: true, ..Cage::default() });
     let found = Fan::new(&body).locate(&[DVec3::new(0.95, 0.5, 0.5)], 1.0, VERY_FAR);
-    assert_eq!(found[0].map(|place| place.element), Some(1));
+    assert_eq!(found[0].map(|place| place.simplex.element), Some(1));
 }

@@ -6,26 +6,19 @@ use super::{BEYOND, CLOSE, Cutting, LEAST, directions};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-/// Nodes in faces and in cubes.
-#[derive(Default)]
-pub(super) struct Inner {
-    /// The face or the cube of each node, in rising order: the place of its lowest corner times 4, and the axis across the face, or 3.
-    pub(super) keys: Vec<usize>,
-    /// In halves of the side from the origin.
-    pub(super) nodes: Vec<DVec3>,
-}
-
-impl Inner {
-    /// The places in lists of the nodes of a face or a cube.
-    pub(super) fn of(&self, low: usize, which: usize) -> std::ops::Range<usize> {
-        let key = 4 * low + which;
-        self.keys.partition_point(|&other| other < key)..self.keys.partition_point(|&other| other <= key)
-    }
-}
+/// A node in a face or in a cube: the place of its lowest corner times 4, and the axis across the face, or 3; and where the node is, in halves
+/// of the side from the origin.
+pub(super) type Inner = (usize, DVec3);
 
 impl Cutting<'_> {
+    /// The places in lists of the nodes of a face or a cube.
+    pub(super) fn inner_of(&self, low: usize, which: usize) -> std::ops::Range<usize> {
+        let key = 4 * low + which;
+        self.inner.partition_point(|&(other, _)| other < key)..self.inner.partition_point(|&(other, _)| other <= key)
+    }
+
     /// Where the surface is cut by the faces of thin cubes, and the corners of its parts in them, with their faces and cubes.
-    pub(super) fn candidates(&self) -> Vec<(usize, DVec3)> {
+    pub(super) fn candidates(&self) -> Vec<Inner> {
         let (lattice, surface) = self.lattice.in_cubes();
         let of_triangle = |&of: &[u32; 3]| {
             let mut found = Vec::new();
@@ -55,7 +48,7 @@ impl Cutting<'_> {
     }
 
     /// The nodes of a face or a cube in directions in which the surface there is far beyond the nodes known.
-    pub(super) fn extremes(&self, candidates: &[(usize, DVec3)]) -> Vec<(usize, DVec3)> {
+    pub(super) fn extremes(&self, candidates: &[Inner]) -> Vec<Inner> {
         let key = candidates[0].0;
         let across = Some(key % 4).filter(|&axis| axis < AXES);
         let low = self.lattice.point(key / 4);
