@@ -163,7 +163,7 @@ pub(crate) fn nearest_of([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
 mod tests {
     use super::*;
 
-    /// No point of a triangle is nearer, and one without area has its nearest point, too.
+    /// No point of a triangle is nearer, and some are as near. One without area has its nearest point, too.
     #[test]
     fn no_point_of_a_triangle_is_nearer() {
         let triangle = [DVec3::new(0.1, 0.0, 0.2), DVec3::new(1.0, 0.3, 0.0), DVec3::new(0.2, 0.9, -0.3)];
@@ -173,10 +173,10 @@ mod tests {
             for at in 0..1000u32 {
                 let point = DVec3::from_array([at % 10, at / 10 % 10, at / 100].map(|n| f64::from(n) * 0.3 - 1.2));
                 let least = nearest_of(triangle, point).distance(point);
-                for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {
-                    let there = a + (b - a) * f64::from(i) / 20.0 + (c - a) * f64::from(j) / 20.0;
-                    assert!(there.distance(point) >= least - 1e-12, "{point}");
-                }
+                let all = (0..=20).flat_map(|i| (0..=20 - i).map(move |j| [i, j].map(f64::from)));
+                let all = all.map(|[i, j]| a + (b - a) * i / 20.0 + (c - a) * j / 20.0);
+                let nearest = all.map(|at| at.distance(point)).fold(f64::INFINITY, f64::min);
+                assert!((least - 1e-12..least + 0.05).contains(&nearest), "{point}: {least} {nearest}");
             }
         }
     }
@@ -190,16 +190,5 @@ mod tests {
             assert!(grid.around(low + 0.5).any(|found| found == item));
         }
         assert_eq!(Boxes::new(boxes, (DVec3::ZERO, DVec3::splat(40.0)), 1.0).cell, 1.0);
-    }
-
-    #[test]
-    fn the_nearest_point_of_a_triangle_is_in_it_on_a_side_or_a_corner() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let nearest = |x: f64, y: f64| nearest_of(triangle, DVec3::new(x, y, 0.7));
-        assert_eq!(nearest(0.2, 0.3), DVec3::new(0.2, 0.3, 0.0));
-        assert_eq!(nearest(0.25, -2.0), DVec3::new(0.25, 0.0, 0.0));
-        assert_eq!(nearest(1.0, 1.0), DVec3::new(0.5, 0.5, 0.0));
-        assert_eq!(nearest(-1.0, -1.0), DVec3::ZERO);
-        assert_eq!(nearest(3.0, 0.5), DVec3::X);
     }
 }

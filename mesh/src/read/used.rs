@@ -25,11 +25,6 @@ impl Used {
         Self { new }
     }
 
-    /// Whether no point is left out.
-    pub(crate) fn are_all(&self) -> bool {
-        !self.new.contains(&NONE)
-    }
-
     /// The values of these points among those of all.
     pub(crate) fn of<T: Copy>(&self, all: &[T]) -> Vec<T> {
         all.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(value, _)| *value).collect()

@@ -55,10 +55,6 @@ impl Surface {
     /// The surface with those points only that belong to a triangle, in the same order.
     pub(crate) fn compact(mut self) -> Self {
         let used = Used::new(self.points.len(), self.triangles.as_flattened());
-        if used.are_all() {
-            self.groups.retain(|group| !group.points.is_empty());
-            return self;
-        }
         self.triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
         Self { points: used.of(&self.points), groups: used.groups(&self.groups), ..self }
     }
