@@ -2,15 +2,15 @@
 
 use localshape::internals::{Failure, is_folder, read_file, write_whole};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The folder of a study.
 pub(crate) struct Folder {
-    path: PathBuf,
+    pub(crate) path: PathBuf,
     /// The name of the study.
     name: &'static str,
     /// The first line of its Markdown file: the command that makes it.
-    mark: String,
+    pub(crate) mark: String,
 }
 
 impl Folder {
@@ -47,15 +47,6 @@ impl Folder {
         let other = || mark.strip_prefix("<!-- ").and_then(|mark| mark.strip_suffix(" -->"));
         let strange = || other().map_or_else(|| unknown(file), |other| format!("the study of `{other}`"));
         Ok((mark != self.mark).then(strange))
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The first line of the Markdown file.
-    pub(crate) fn mark(&self) -> &str {
-        &self.mark
     }
 
     /// Writes files, each completely or not at all.

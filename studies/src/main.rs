@@ -108,30 +108,15 @@ enum Name {
         threads: ThreadOptions,
     },
     /// The models as materials: cantilevers of few cells beside the theory of beams, the elastica, modes and waves
-    Beam {
-        #[command(flatten)]
-        threads: ThreadOptions,
-    },
+    Beam(ThreadOptions),
     /// The patch test: irregular blocks in uniform strain
-    Patch {
-        #[command(flatten)]
-        threads: ThreadOptions,
-    },
+    Patch(ThreadOptions),
     /// Cook's membrane in the plane, beside the literature
-    Cook {
-        #[command(flatten)]
-        threads: ThreadOptions,
-    },
+    Cook(ThreadOptions),
     /// Loads: bodies at rest that are pulled, twisted, bent and pressed, beside closed forms and the literature
-    Load {
-        #[command(flatten)]
-        threads: ThreadOptions,
-    },
+    Load(ThreadOptions),
     /// Contact: momenta, energies, rest, friction, waves and Hertz's law beside what is asked, and what crosses
-    Contact {
-        #[command(flatten)]
-        threads: ThreadOptions,
-    },
+    Contact(ThreadOptions),
     /// The error of the end of one beam against the time of a simulated second, by model and resolution
     BeamTime,
     /// Table 1 of the paper, the errors of the rotations from Eq. (15), beside ours
@@ -229,11 +214,11 @@ impl Name {
                 let study = Stress { steps: stress::STEPS, models: stress::NamedModel::compared(&model) };
                 Task::new("stress", study, threads.count(), repeated("--model", &model))
             }
-            Self::Beam { threads } => Task::new("beam", Beam::usual(), threads.count(), Vec::new()),
-            Self::Patch { threads } => Task::new("patch", Patch::usual(), threads.count(), Vec::new()),
-            Self::Cook { threads } => Task::new("cook", Cook::usual(), threads.count(), Vec::new()),
-            Self::Load { threads } => Task::new("load", Loads::USUAL, threads.count(), Vec::new()),
-            Self::Contact { threads } => Task::new("contact", Contact::usual(), threads.count(), Vec::new()),
+            Self::Beam(threads) => Task::new("beam", Beam::usual(), threads.count(), Vec::new()),
+            Self::Patch(threads) => Task::new("patch", Patch::usual(), threads.count(), Vec::new()),
+            Self::Cook(threads) => Task::new("cook", Cook::usual(), threads.count(), Vec::new()),
+            Self::Load(threads) => Task::new("load", Loads::USUAL, threads.count(), Vec::new()),
+            Self::Contact(threads) => Task::new("contact", Contact::usual(), threads.count(), Vec::new()),
             Self::BeamTime => Task::new("beam-time", Time::usual(), 1, Vec::new()),
             Self::Table1 { orientations, threads } => {
                 let arguments = repeated("--orientations", &[orientations.to_string()]);

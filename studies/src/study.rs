@@ -98,7 +98,7 @@ pub(crate) fn make(task: &Task, options: &Options) -> Result<Status, Failure> {
         }
         return Ok(Status::Interrupted);
     };
-    let text = format!("{}\n{}", folder.mark(), found.text);
+    let text = format!("{}\n{}", folder.mark, found.text);
     let mut files = vec![(format!("{name}.md"), text.clone().into_bytes())];
     files.extend(found.tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
     if let Some(page) = &found.page {
@@ -110,10 +110,10 @@ pub(crate) fn make(task: &Task, options: &Options) -> Result<Status, Failure> {
     if options.json {
         let tables: Map<String, Value> =
             found.tables.iter().map(|(name, table)| ((*name).to_owned(), table.json())).collect();
-        let document = json!({ "study": name, "folder": folder.path(), "files": names, "tables": tables });
+        let document = json!({ "study": name, "folder": folder.path, "files": names, "tables": tables });
         print(&format!("{document:#}\n"))?;
     } else if !options.quiet {
-        print(&format!("{text}\nIn {}: {}\n", folder.path().display(), names.join(", ")))?;
+        print(&format!("{text}\nIn {}: {}\n", folder.path.display(), names.join(", ")))?;
     }
     Ok(Status::Done)
 }

@@ -17,17 +17,17 @@ fn speed_of_waves() -> f64 {
 }
 
 pub(super) fn trials(refined: u32, periods: u32) -> Vec<Trial> {
-    let mut all = Vec::new();
+    let mut all: Vec<Trial> = Vec::new();
     for (parts, restitution) in [(50, 0.0), (50, 1.0), (200, 1.0)] {
         for at in 0..refined {
-            all.push(Trial::new("bars", move || meet(10 << at, parts, restitution, false)));
-            all.push(Trial::new("bars", move || meet(10 << at, parts, restitution, true)));
+            all.push(Box::new(move || meet(10 << at, parts, restitution, false)));
+            all.push(Box::new(move || meet(10 << at, parts, restitution, true)));
             if parts == 50 || at + 1 < refined {
-                all.push(Trial::new("bars", move || bounces(4 << at, parts, restitution, periods)));
+                all.push(Box::new(move || bounces(4 << at, parts, restitution, periods)));
             }
         }
     }
-    all.extend([0.1, 0.25, 0.5, 0.75, 0.9].map(|restitution| Trial::new("bars", move || lost(restitution))));
+    all.extend([0.1, 0.25, 0.5, 0.75, 0.9].map(|restitution| Box::new(move || lost(restitution)) as Trial));
     all
 }
 

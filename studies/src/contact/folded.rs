@@ -11,7 +11,7 @@ pub(super) fn trials() -> Vec<Trial> {
     [(3.0, Some(0)), (10.0, None)]
         .into_iter()
         .flat_map(|(speed, most)| [0.0, 1.0].map(|restitution| (speed, restitution, most)))
-        .map(|(speed, restitution, most)| Trial::new("shapes", move || vec![closes(speed, restitution, most)]))
+        .map(|(speed, restitution, most)| Box::new(move || vec![closes(speed, restitution, most)]) as Trial)
         .collect()
 }
 

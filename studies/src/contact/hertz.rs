@@ -26,7 +26,7 @@ const STEPS: u64 = 2000;
 const GROWTH: f64 = 2.5;
 
 pub(super) fn trials(refined: u32) -> Vec<Trial> {
-    (0..refined.min(3)).map(|at| Trial::new("hertz", move || pressed(16 + 8 * at))).collect()
+    (0..refined.min(3)).map(|at| Box::new(move || pressed(16 + 8 * at)) as Trial).collect()
 }
 
 /// The block of so many cells across, with its top at the height 0, and the least distance of its nodes (m).

@@ -38,19 +38,20 @@ impl Contact {
         Self { impacts: 12, rest: 60.0, refined: 4, periods: 100, starts: 10 }
     }
 
-    fn trials(&self) -> Vec<Trial> {
+    /// All trials, each with its group.
+    fn trials(&self) -> Vec<(&'static str, Trial)> {
         [
             // The longest first.
-            rest::trials(self.rest),
-            hertz::trials(self.refined),
-            bars::trials(self.refined, self.periods),
-            slopes::trials(self.refined),
-            shapes::trials(self.starts),
-            impacts::trials(self.impacts),
-            folded::trials(),
+            ("rest", rest::trials(self.rest)),
+            ("hertz", hertz::trials(self.refined)),
+            ("bars", bars::trials(self.refined, self.periods)),
+            ("slopes", slopes::trials(self.refined)),
+            ("shapes", shapes::trials(self.starts)),
+            ("impacts", impacts::trials(self.impacts)),
+            ("shapes", folded::trials()),
         ]
         .into_iter()
-        .flatten()
+        .flat_map(|(group, trials)| trials.into_iter().map(move |trial| (group, trial)))
         .collect()
     }
 }
@@ -68,16 +69,7 @@ impl Study for Contact {
 }
 
 /// A world with a known outcome.
-struct Trial {
-    group: &'static str,
-    run: Box<dyn Fn() -> Vec<Measured> + Send + Sync>,
-}
-
-impl Trial {
-    fn new(group: &'static str, run: impl Fn() -> Vec<Measured> + Send + Sync + 'static) -> Self {
-        Self { group, run: Box::new(run) }
-    }
-}
+type Trial = Box<dyn Fn() -> Vec<Measured> + Send + Sync>;
 
 /// A measured figure, and what is asked of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,16 +139,16 @@ impl Measured {
 /// The findings, which do not depend on the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Results {
-    study: Contact,
+    /// With their groups.
     pub(crate) all: Vec<(&'static str, Measured)>,
 }
 
 /// Measures on the thread pool of the caller; `None` if `watch` stops it.
 pub(crate) fn measure(study: &Contact, watch: &Watch<'_>) -> Option<Results> {
     let trials = study.trials();
-    let found = each(&trials, watch, |trial| (trial.run)())?;
-    let named = trials.iter().zip(found).flat_map(|(trial, all)| all.into_iter().map(|one| (trial.group, one)));
-    Some(Results { study: study.clone(), all: named.collect() })
+    let found = each(&trials, watch, |(_, trial)| trial())?;
+    let named = trials.iter().zip(found).flat_map(|((group, _), all)| all.into_iter().map(|one| (*group, one)));
+    Some(Results { all: named.collect() })
 }
 
 /// The groups of trials, with their headings.
@@ -223,7 +215,7 @@ impl Results {
             "Each dot is one world with a closed form: a bar, a ball on a block, a body on a slope.".to_owned(),
             "Lines that fall to the right show errors that vanish with refinement.".to_owned(),
         ];
-        Page { title: "Contact beside closed forms".to_owned(), caption, columns: 2, contents: Contents::Plots(plots) }
+        Page { title: "Contact beside closed forms".to_owned(), caption, contents: Contents::Plots(plots) }
     }
 }
 

@@ -25,9 +25,9 @@ pub(super) fn trials(time: f64) -> Vec<Trial> {
     let piles = [0.0, 0.5, 1.0].map(|restitution| {
         let (body, pile) = (Arc::clone(&body), pile.clone());
         let name = format!("pile of ten, e = {restitution}");
-        Trial::new("rest", move || stay(&name, &body, &pile, 2e4, restitution, time))
+        Box::new(move || stay(&name, &body, &pile, 2e4, restitution, time)) as Trial
     });
-    let tower = Trial::new("rest", move || stay("tower of ten, e = 0", &body, &tower, 1e6, 0.0, 0.25 * time));
+    let tower: Trial = Box::new(move || stay("tower of ten, e = 0", &body, &tower, 1e6, 0.0, 0.25 * time));
     piles.into_iter().chain([tower]).collect()
 }
 

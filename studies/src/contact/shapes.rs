@@ -50,8 +50,7 @@ fn situations() -> [Situation; 10] {
 }
 
 pub(super) fn trials(starts: u64) -> Vec<Trial> {
-    let trial = |at: usize| Trial::new("shapes", move || vec![falls(at, starts)]);
-    (0..10).map(trial).collect()
+    (0..10).map(|at| Box::new(move || vec![falls(at, starts)]) as Trial).collect()
 }
 
 /// The number of disturbed starts after which triangles cross in any frame of a second.

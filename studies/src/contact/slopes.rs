@@ -11,15 +11,15 @@ use std::sync::Arc;
 const FRICTION: f64 = 0.5;
 
 pub(super) fn trials(refined: u32) -> Vec<Trial> {
-    let mut all = Vec::new();
+    let mut all: Vec<Trial> = Vec::new();
     for ground in [Ground::Floor, Ground::Slab] {
-        all.push(Trial::new("slopes", move || creeps(ground)));
-        all.push(Trial::new("slopes", move || slides(ground)));
-        all.push(Trial::new("slopes", move || stops(ground)));
+        all.push(Box::new(move || creeps(ground)));
+        all.push(Box::new(move || slides(ground)));
+        all.push(Box::new(move || stops(ground)));
     }
     for at in 0..refined {
-        all.push(Trial::new("slopes", move || disc(24 << at)));
-        all.push(Trial::new("slopes", move || ball(4 + 2 * at)));
+        all.push(Box::new(move || disc(24 << at)));
+        all.push(Box::new(move || ball(4 + 2 * at)));
     }
     all
 }

@@ -31,7 +31,7 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
         forces.iter_mut().zip(&shares).for_each(|(force, share)| *force += across * (load * share));
     };
     let follower: Arc<dyn Load> = Arc::new(follows);
-    let found = at_rest(&bar.body, made.as_ref(), bar.end(0), vec![follower])?;
+    let found = at_rest(&bar.body, made.as_ref(), &bar.ends[0], vec![follower])?;
     let rod = Rod::square(bar.length, DVec3::ZERO, material);
     Some(rod.followed(DVec3::X * load).x / bar.tip(&found).x)
 }

@@ -29,11 +29,10 @@ fn measure(model: &Model, refined: u32, stretch: f64) -> Option<f64> {
     let bar = Bar::new(model.elements, [1 << refined, 1 << refined, 2 << refined], 0.1 / f64::from(1 << refined), 1.0);
     let (made, _) = bar.model(model, MATERIAL)?;
     let (stress, across) = law(model.kind, stretch);
-    let ends = [0, 1].map(|end| bar.end(end));
     let mut start: Vec<_> = bar.body.rest().iter().map(|&rest| rest.with_z(rest.z * stretch)).collect();
     // Ends are as thin as the bar; a corner of the lattice is at y = 0, and the middle at x = 0.
-    ends.iter().copied().flatten().for_each(|&node| start[node] *= DVec3::new(across, across, 1.0));
-    let around = Surroundings { grips: ends.map(hold).to_vec(), ..Surroundings::default() };
+    bar.ends.iter().flatten().for_each(|&node| start[node] *= DVec3::new(across, across, 1.0));
+    let around = Surroundings { grips: bar.ends.iter().map(|end| hold(end)).collect(), ..Surroundings::default() };
     let parts = [(Arc::clone(&bar.body), made.as_ref())];
     let position = rest_of(&parts, start, &around, 1.0)?;
     let [below, above] = reactions(&parts, position, around, 1)?[..] else { return None };

@@ -28,7 +28,7 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
     let weights: Vec<f64> = bar.load(DVec3::X).iter().map(|force| force.x).collect();
     let (nodes, weights) = (0..).zip(weights).filter(|&(_, weight)| weight > 0.0).unzip();
     let load = Arc::new(Loading::torque(nodes, weights, DVec3::Z * torque, Course::ALWAYS));
-    let found = at_rest(&bar.body, made.as_ref(), bar.end(0), vec![load])?;
+    let found = at_rest(&bar.body, made.as_ref(), &bar.ends[0], vec![load])?;
     let [low, high] = [-0.25, 0.25].map(|share| turn(&bar, &found, bar.layer_at(share)));
     Some(0.5 * TWIST / (high - low))
 }

@@ -53,7 +53,8 @@ fn scale(model: &Model, refined: u32) -> Option<f64> {
     let soft = bar.body.elements().iter().map(|nodes| if is_above(nodes) { 0.1 } else { 1.0 }).collect();
     let body = Arc::new(Body::clone(&bar.body).with_modulus(soft).expect("one for each element"));
     let made = model.on(&body, MATERIAL, SIDE / f64::from(1 << refined))?;
-    let around = Surroundings { gravity: DVec3::Z * GRAVITY, grips: vec![hold(bar.end(0))], ..Surroundings::default() };
+    let around =
+        Surroundings { gravity: DVec3::Z * GRAVITY, grips: vec![hold(&bar.ends[0])], ..Surroundings::default() };
     let parts = [(Arc::clone(&body), made.as_ref())];
     let position = rest_of(&parts, body.rest().to_vec(), &around, 1.0)?;
     let force: DVec3 = reactions(&parts, position, around, 1)?.into_iter().sum();

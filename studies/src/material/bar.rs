@@ -15,8 +15,8 @@ pub(crate) struct Bar {
     /// Width and depth, along y and x (m).
     pub(crate) section: [f64; 2],
     pub(crate) length: f64,
-    /// Nodes at the held end and at the loaded one.
-    ends: [Vec<usize>; 2],
+    /// Nodes at its first end, which may be held, and at its last one, which is loaded.
+    pub(crate) ends: [Vec<usize>; 2],
 }
 
 impl Bar {
@@ -62,11 +62,6 @@ impl Bar {
     /// The places of its nodes (m) as a cantilever under a load (N), from a start.
     pub(crate) fn bent(&self, model: &dyn ElasticModel, load: DVec3, start: Vec<DVec3>) -> Option<Vec<DVec3>> {
         rest_of(&[(Arc::clone(&self.body), model)], start, &self.under(load), 1.0)
-    }
-
-    /// The nodes at its first end, 0, or its last one, 1.
-    pub(crate) fn end(&self, end: usize) -> &[usize] {
-        &self.ends[end]
     }
 
     /// The nodes of the layer nearest to a share of its length from its middle.

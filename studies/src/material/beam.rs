@@ -385,7 +385,6 @@ impl Results {
             caption: vec![format!(
                 "The deflection under a small load, beside Timoshenko's; the bar is {SLENDERNESS} times as long as deep."
             )],
-            columns: 2,
             contents: Contents::Plots(plots.into_iter().flatten().collect()),
         }
     }

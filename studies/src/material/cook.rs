@@ -179,7 +179,6 @@ impl Results {
             caption: vec![format!(
                 "The deflection beside {PRINTED}, the number in the literature (E = 1, ν = 1/3, load 1)."
             )],
-            columns: 2,
             contents: Contents::Plots(Elements::ALL.map(plot).into()),
         }
     }

@@ -9,7 +9,7 @@ use super::{MODELS, Model};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table, or_dash};
 use glam::{DMat3, DVec3};
-use localshape::sim::geometry::volumes_at_rest;
+use localshape::sim::geometry::{bounds, volumes_at_rest};
 use localshape::sim::{Dimension, Material, Surroundings};
 use std::sync::Arc;
 
@@ -105,10 +105,7 @@ impl Patch {
         let strain = strain();
         let place = |&rest: &DVec3| rest + strain * rest * SIZE;
         let uniform: Vec<_> = body.rest().iter().map(place).collect();
-        let (low, high) = body
-            .rest()
-            .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
+        let (low, high) = bounds(body.rest());
         let is_outer = |&rest: &DVec3| (rest - low).min(high - rest).min_element() < 1e-6 * SIDE;
         let (held, inside): (Vec<_>, Vec<_>) = (0..body.len()).partition(|&node| is_outer(&body.rest()[node]));
         let around = Surroundings { grips: vec![hold(&held)], ..Surroundings::default() };

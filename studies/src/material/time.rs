@@ -156,7 +156,7 @@ impl Cantilever {
         let twin = Model { kind: "shape-based", ..*model };
         let resting = if model.kind == "xpbd" { bar.model(&twin, MATERIAL)?.0 } else { Arc::clone(&made) };
         let position = bar.bent(resting.as_ref(), DVec3::X * load, bar.body.rest().to_vec())?;
-        let held = hold(bar.end(0));
+        let held = hold(&bar.ends[0]);
         let restraint =
             Restraint { grips: std::slice::from_ref(&held), duration: f64::INFINITY, ..Restraint::default() };
         let stability = Stability::of(&bar.body, made.as_ref(), INTEGRATOR, restraint);
@@ -321,7 +321,6 @@ impl Results {
                 ),
                 format!("Times on one thread of {}.", machine()),
             ],
-            columns: 2,
             contents: Contents::Plots(plots),
         }
     }

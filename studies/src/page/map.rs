@@ -14,6 +14,7 @@
 
 use super::{Area, Colour, MARGIN, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, TEXT, USUAL, write};
 use localshape::picture::{Annotation, Axis, Chart, Diagram, Layer, Name, TextStyle};
+use std::mem::discriminant;
 
 /// One map.
 pub(crate) struct Map {
@@ -24,7 +25,7 @@ pub(crate) struct Map {
     /// The places of its rows, rising and even.
     pub(crate) up: Vec<f64>,
     /// The cells, column by column from below.
-    pub(crate) cells: Vec<Tile>,
+    pub(crate) cells: Vec<Outcome>,
     /// Heights with numbers at the left and at the right.
     pub(crate) ticks: Vec<(f64, [String; 2])>,
     /// Horizontal lines: their heights and names.
@@ -35,9 +36,12 @@ pub(crate) struct Map {
 
 /// The outcome in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tile {
+pub(crate) enum Outcome {
+    /// No element is turned over at the end.
     Whole,
-    TurnedOver,
+    /// This number of elements is turned over.
+    TurnedOver(usize),
+    /// It diverged.
     Diverged,
 }
 
@@ -60,18 +64,18 @@ const GROUND: Colour = [0xfb, 0xfb, 0xfa];
 const LABEL: TextStyle = TextStyle { size: 14.5, is_bold: true, colour: TEXT, has_halo: true };
 
 /// The outcomes with their meanings.
-const MEANINGS: [(Tile, &str); 3] = [
-    (Tile::Whole, "whole at the end"),
-    (Tile::TurnedOver, "stable, but elements turned over at the end"),
-    (Tile::Diverged, "diverged"),
+const MEANINGS: [(Outcome, &str); 3] = [
+    (Outcome::Whole, "whole at the end"),
+    (Outcome::TurnedOver(1), "stable, but elements turned over at the end"),
+    (Outcome::Diverged, "diverged"),
 ];
 
 /// Draws the meaning of each kind of cell.
 pub(super) fn legend(diagram: &mut Diagram, top: f64) {
     let mut left = MARGIN;
-    for (tile, text) in MEANINGS {
+    for (outcome, text) in MEANINGS {
         let axis = Axis::linear([0.0, 1.0], Vec::new());
-        let layers = vec![tile.layer(vec![[0.5; 2]], [1, 1])];
+        let layers = vec![outcome.layer(vec![[0.5; 2]], [1, 1])];
         let chart = Chart { x: axis.clone(), y: axis, layers, annotations: Vec::new() };
         diagram.chart(&chart, [left, top, left + SQUARE, top + SQUARE]);
         left += SQUARE + BESIDE;
@@ -80,13 +84,13 @@ pub(super) fn legend(diagram: &mut Diagram, top: f64) {
     }
 }
 
-impl Tile {
+impl Outcome {
     /// Tiles at places in a chart with a number of tiles in a row and in a column.
     fn layer(self, points: Vec<[f64; 2]>, counts: [usize; 2]) -> Layer {
         // As in pictures of bodies, the hatch replaces the colour in grey prints.
         let (colour, diagonal) = match self {
             Self::Whole => (WHOLE, None),
-            Self::TurnedOver => (TURNED_OVER, Some(HATCHES)),
+            Self::TurnedOver(_) => (TURNED_OVER, Some(HATCHES)),
             Self::Diverged => (SECOND_TEXT, None),
         };
         Layer::Tiles { points, counts, colour, diagonal }
@@ -108,9 +112,10 @@ impl Map {
         let Some((x, y)) = ends(&logarithms).zip(ends(&self.up)) else { return };
         let (x, counts) = (x.map(libm::exp10), [self.across.len(), self.up.len()]);
         let at = |number: usize| [self.across[number / counts[1]], self.up[number % counts[1]]];
-        let tiles = MEANINGS.map(|(tile, _)| {
-            let alike = self.cells.iter().enumerate().filter(|(_, other)| **other == tile);
-            tile.layer(alike.map(|(number, _)| at(number)).collect(), counts)
+        let tiles = MEANINGS.map(|(outcome, _)| {
+            let is_alike = |other: &Outcome| discriminant(other) == discriminant(&outcome);
+            let alike = self.cells.iter().enumerate().filter(|(_, other)| is_alike(other));
+            outcome.layer(alike.map(|(number, _)| at(number)).collect(), counts)
         });
         let limits = self.lines.iter().enumerate().flat_map(|(number, &(height, _))| {
             let points = x.map(|end| [end, height]).to_vec();

@@ -3,7 +3,7 @@
 mod map;
 mod plot;
 
-pub(crate) use map::{Map, Tile};
+pub(crate) use map::{Map, Outcome};
 pub(crate) use plot::{Line, Plot};
 
 use image::ImageFormat;
@@ -48,15 +48,15 @@ pub(crate) struct Page {
     pub(crate) title: String,
     /// Lines below the title.
     pub(crate) caption: Vec<String>,
-    /// The number of parts beside each other.
-    pub(crate) columns: usize,
     pub(crate) contents: Contents,
 }
 
 /// The parts of a page.
 pub(crate) enum Contents {
+    /// Plots, of which two stand beside each other.
     Plots(Vec<Plot>),
-    Maps(Vec<Map>),
+    /// Maps, and how many stand beside each other.
+    Maps(Vec<Map>, usize),
 }
 
 /// The room around each part of a page: left, above, right and below (px); its height relative to its width, and the
@@ -68,25 +68,22 @@ struct Room {
 }
 
 impl Page {
-    fn room(&self) -> &'static Room {
-        match self.contents {
-            Contents::Plots(_) => &plot::ROOM,
-            Contents::Maps(_) => &map::ROOM,
+    /// The number of parts, how many stand beside each other, and the room of each.
+    fn parts(&self) -> (usize, usize, Room) {
+        match &self.contents {
+            Contents::Plots(plots) => (plots.len(), 2, plot::ROOM),
+            Contents::Maps(maps, columns) => (maps.len(), *columns, map::ROOM),
         }
     }
 
     /// The places of the parts, and the height of the page.
     fn areas(&self) -> (Vec<Area>, f64) {
-        let Room { around: [left, above, right, below], shape, legend } = self.room();
-        let count = match &self.contents {
-            Contents::Plots(plots) => plots.len(),
-            Contents::Maps(maps) => maps.len(),
-        };
-        let (columns, rows) = (self.columns as f64, count.div_ceil(self.columns) as f64);
+        let (count, across, Room { around: [left, above, right, below], shape, legend }) = self.parts();
+        let (columns, rows) = (across as f64, count.div_ceil(across) as f64);
         let wide = (WIDE - 2.0 * MARGIN - columns * (left + right) - (columns - 1.0) * BETWEEN) / columns;
         let (high, top) = (shape * wide, CAPTION_AT + LINE * (self.caption.len() as f64 - 0.4) + legend);
         let area = |at: usize| {
-            let (column, row) = ((at % self.columns) as f64, (at / self.columns) as f64);
+            let (column, row) = ((at % across) as f64, (at / across) as f64);
             let x = MARGIN + left + column * (left + wide + right + BETWEEN);
             let y = top + above + row * (above + high + below);
             [x, y, x + wide, y + high]
@@ -103,8 +100,8 @@ impl Page {
             write(&mut diagram, line, USUAL, 0.0, [MARGIN, CAPTION_AT + LINE * at as f64]);
         }
         match &self.contents {
-            Contents::Plots(plots) => plot::draw(plots, self.columns, &areas, &mut diagram),
-            Contents::Maps(maps) => {
+            Contents::Plots(plots) => plot::draw(plots, &areas, &mut diagram),
+            Contents::Maps(maps, _) => {
                 map::legend(&mut diagram, CAPTION_AT + LINE * self.caption.len() as f64);
                 maps.iter().zip(areas).for_each(|(map, area)| map.draw(&mut diagram, area));
             }

@@ -11,6 +11,7 @@
 
 use super::{Area, Colour, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, write};
 use localshape::picture::{Annotation, Axis, Chart, Diagram, Layer, Name, TextStyle, colours, dashes};
+use std::collections::HashMap;
 
 /// One plot. Axes of one name have one range on a page.
 pub(crate) struct Plot {
@@ -66,30 +67,22 @@ const REACH: f64 = 0.8;
 /// The dots of curves without a name, such as the least and the greatest value of others.
 const UNNAMED: usize = 7;
 
-/// The families of curves in plots, with their colours.
-struct Families<'a>(Vec<(&'a str, Colour)>);
-
-impl<'a> Families<'a> {
-    fn of(plots: &'a [Plot]) -> Self {
-        let mut families: Vec<&str> = Vec::new();
-        for curve in plots.iter().flat_map(|plot| &plot.curves) {
-            if !families.contains(&curve.family.as_str()) {
-                families.push(&curve.family);
-            }
+/// The colours of the families of curves in plots.
+fn families(plots: &[Plot]) -> HashMap<&str, Colour> {
+    let mut families: Vec<&str> = Vec::new();
+    for curve in plots.iter().flat_map(|plot| &plot.curves) {
+        if !families.contains(&curve.family.as_str()) {
+            families.push(&curve.family);
         }
-        let colours = colours(&families);
-        Self(families.into_iter().zip(colours).collect())
     }
-
-    fn colour(&self, family: &str) -> Colour {
-        self.0.iter().find(|(known, _)| *known == family).map_or(SLOPES, |(_, colour)| *colour)
-    }
+    let colours = colours(&families);
+    families.into_iter().zip(colours).collect()
 }
 
-/// Draws plots, each in its area; so many stand beside each other. Those that do, and have one axis upwards, have one range of it.
-pub(super) fn draw(plots: &[Plot], columns: usize, areas: &[Area], diagram: &mut Diagram) {
-    let families = Families::of(plots);
-    for (row, areas) in plots.chunks(columns).zip(areas.chunks(columns)) {
+/// Draws plots, each in its area. The two beside each other have one range upwards if they have one axis there.
+pub(super) fn draw(plots: &[Plot], areas: &[Area], diagram: &mut Diagram) {
+    let families = families(plots);
+    for (row, areas) in plots.chunks(2).zip(areas.chunks(2)) {
         for (plot, &area) in row.iter().zip(areas) {
             let [across, up] = plot.axes;
             plot.draw(diagram, area, &families, [range(plots, 0, across), range(row, 1, up)]);
@@ -136,7 +129,7 @@ impl Plot {
     }
 
     /// The plot in an area, on axes with these logarithms at their ends.
-    fn chart(&self, area: Area, families: &Families<'_>, ranges: [[f64; 2]; 2]) -> Chart {
+    fn chart(&self, area: Area, families: &HashMap<&str, Colour>, ranges: [[f64; 2]; 2]) -> Chart {
         let [x, y] = [0, 1].map(|axis| Axis::logarithmic(ranges[axis].map(libm::exp10), MOST[axis]));
         let mut chart = Chart { x, y, ..Chart::default() };
         let (mut layers, mut names) = (Vec::new(), Vec::new());
@@ -145,7 +138,7 @@ impl Plot {
         }
         for (at, curve) in self.curves.iter().enumerate() {
             let points: Vec<_> = curve.shown().collect();
-            let colour = families.colour(&curve.family);
+            let colour = families[curve.family.as_str()];
             let is_variant = |other: &&Line| other.family == curve.family && !other.name.is_empty();
             let variant =
                 if curve.name.is_empty() { UNNAMED } else { self.curves[..at].iter().filter(is_variant).count() };
@@ -171,7 +164,7 @@ impl Plot {
         curve.shown().max_by(|&one, &other| alone(one).total_cmp(&alone(other)))
     }
 
-    fn draw(&self, diagram: &mut Diagram, area: Area, families: &Families<'_>, ranges: [[f64; 2]; 2]) {
+    fn draw(&self, diagram: &mut Diagram, area: Area, families: &HashMap<&str, Colour>, ranges: [[f64; 2]; 2]) {
         let [left, top, right, bottom] = area;
         write(diagram, &self.name, NAME, 0.0, [left - NUMBERS, top - ABOVE + 20.0]);
         write(diagram, self.axes[1], SMALL, 0.0, [left - NUMBERS, top - 12.0]);

@@ -57,7 +57,6 @@ impl Results {
                 ),
                 format!("Times on one thread of {}.", machine()),
             ],
-            columns: 2,
             contents: Contents::Plots([order].into_iter().chain(by_time).collect()),
         }
     }

@@ -15,8 +15,6 @@ impl Results {
         let (strain, _) = USUAL;
         let error = |one: &Measured| short(one.worst);
         let time = |one: &Measured| format!("{:.0} ({:.0}–{:.0})", one.time.median, one.time.lower, one.time.upper);
-        let [nearest, other, wrong, none] =
-            [Outcome::Nearest, Outcome::Some, Outcome::Wrong, Outcome::NotANumber].map(Outcome::words);
         format!(
             include_str!("text.md"),
             kind_of_time = kind_of_time(),
@@ -28,10 +26,10 @@ impl Results {
             errors = self.by_increment(strain, error).markdown(1),
             times = self.by_increment(strain, time).markdown(1),
             outcomes = self.robustness().markdown(1),
-            nearest = nearest,
-            other = other,
-            wrong = wrong,
-            none = none,
+            nearest = Outcome::Nearest.words(),
+            other = Outcome::Some.words(),
+            wrong = Outcome::Wrong.words(),
+            none = Outcome::NotANumber.words(),
             many = MANY,
         )
     }

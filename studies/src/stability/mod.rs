@@ -8,6 +8,7 @@
 mod page;
 mod text;
 
+use crate::page::Outcome;
 use crate::study::{Findings, Study, Watch, built_in};
 use localshape::Scene;
 use localshape::scene::{Run, description};
@@ -105,17 +106,6 @@ pub(crate) fn usual(models: &[String]) -> Scene {
         runs.join(",\n")
     );
     built_in(&text, "fall")
-}
-
-/// The outcome of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// No element is turned over at the end.
-    Whole,
-    /// This number of elements is turned over.
-    TurnedOver(usize),
-    /// It diverged.
-    Diverged,
 }
 
 /// A run with one stiffness and one step.

@@ -1,8 +1,8 @@
 //! A map for each run, damping and speed.
 
 use super::text::short;
-use super::{Axes, MapCell, Outcome, Results};
-use crate::page::{Contents, Map, Page, Tile};
+use super::{Axes, Results};
+use crate::page::{Contents, Map, Page};
 
 impl Results {
     pub(super) fn page(&self) -> Page {
@@ -12,11 +12,6 @@ impl Results {
             let cells: Vec<_> = self.of(axes, speed).collect();
             let mut across: Vec<f64> = cells.iter().map(|cell| cell.rate).collect();
             across.dedup();
-            let tile = |cell: &&MapCell| match cell.outcome {
-                Outcome::Whole => Tile::Whole,
-                Outcome::TurnedOver(_) => Tile::TurnedOver,
-                Outcome::Diverged => Tile::Diverged,
-            };
             let tick = |share: f64| (share, [short(share), format!("T/{:.1}", axes.steps_per_cycle(share))]);
             let limit = axes.limit.map(|_| (1.0, "predicted limit"));
             let stretched = axes.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
@@ -26,7 +21,7 @@ impl Results {
                 name: [name, if conditions.is_empty() { model } else { conditions }],
                 across,
                 up: self.protocol.shares.clone(),
-                cells: cells.iter().map(tile).collect(),
+                cells: cells.iter().map(|cell| cell.outcome).collect(),
                 ticks: TICKS.map(tick).into(),
                 lines: limit.into_iter().chain(stretched).collect(),
                 axes: [
@@ -43,8 +38,7 @@ impl Results {
                 "Each cell is a run. The stiffness changes with the same damping ratio; the limit is predicted before the run, at rest."
                     .to_owned(),
             ],
-            columns: self.protocol.speeds.len().clamp(2, 3),
-            contents: Contents::Maps(self.maps().map(map).collect()),
+            contents: Contents::Maps(self.maps().map(map).collect(), self.protocol.speeds.len().clamp(2, 3)),
         }
     }
 }

@@ -45,7 +45,6 @@ impl Results {
                 ),
                 "The paper's numbers are of one start; those that it could not measure are left out.".to_owned(),
             ],
-            columns: 2,
             contents: Contents::Plots(vec![
                 plot("Mean of α", |one| one.mean, |printed| printed.mean),
                 plot("Greatest α", |one| one.maximum, |printed| printed.maximum),

@@ -40,7 +40,6 @@ impl Results {
                     .to_owned(),
                 format!("Times on one thread of {}.", machine()),
             ],
-            columns: 2,
             contents: Contents::Plots(self.comparisons.iter().flat_map(of).collect()),
         }
     }

@@ -8,7 +8,9 @@ fn all_is_on_the_page() {
         name: ["A run".to_owned(), "what it is of, ".repeat(20)],
         across: (0..columns).map(|at| libm::exp10(3.0 + at as f64 / 4.0)).collect(),
         up: (0..rows).map(|at| 0.05 + 0.1 * at as f64).collect(),
-        cells: (0..columns * rows).map(|at| [Tile::Whole, Tile::TurnedOver, Tile::Diverged][at % 3]).collect(),
+        cells: (0..columns * rows)
+            .map(|at| [Outcome::Whole, Outcome::TurnedOver(1), Outcome::Diverged][at % 3])
+            .collect(),
         ticks: vec![(0.5, ["0.5".to_owned(), "T/18".to_owned()])],
         lines: vec![(1.0, "predicted limit"), (0.7, "stretched")],
         axes: ["k/m (1/s²)", "share", "step"].map(str::to_owned),
@@ -16,11 +18,10 @@ fn all_is_on_the_page() {
     let page = Page {
         title: "Maps".to_owned(),
         caption: vec!["one line".to_owned()],
-        columns: 2,
-        contents: Contents::Maps(vec![map(13, 12), map(1, 1), map(0, 0)]),
+        contents: Contents::Maps(vec![map(13, 12), map(1, 1), map(0, 0)], 2),
     };
     let (areas, high) = page.areas();
-    let Room { around: [left, above, right, below], .. } = page.room();
+    let (.., Room { around: [left, above, right, below], .. }) = page.parts();
     for (at, one) in areas.iter().enumerate() {
         assert!(one[0] - left >= MARGIN && one[2] + right <= WIDE - MARGIN && one[3] + below <= high, "{areas:?}");
         let apart = |other: &Area| one[0] - left > other[2] + right || one[1] - above >= other[3] + below;

@@ -19,7 +19,7 @@ const AREA: Area = [100.0, 100.0, 600.0, 500.0];
 /// The charts of these plots.
 fn charts(plots: &[Plot]) -> Vec<Chart> {
     let ranges = |plot: &Plot| [0, 1].map(|axis| range(plots, axis, plot.axes[axis]));
-    plots.iter().map(|plot| plot.chart(AREA, &Families::of(plots), ranges(plot))).collect()
+    plots.iter().map(|plot| plot.chart(AREA, &families(plots), ranges(plot))).collect()
 }
 
 /// The dots of a chart's curves (px).
@@ -57,7 +57,7 @@ fn all_is_on_the_page_whatever_the_numbers() {
             assert!((left..=right).contains(&x) && (top..=bottom).contains(&y), "{x} {y}");
         }
         let (title, caption) = ("Title".to_owned(), vec!["Words".to_owned()]);
-        let page = Page { title, caption, columns: 2, contents: Contents::Plots(plots) };
+        let page = Page { title, caption, contents: Contents::Plots(plots) };
         page.diagram();
     }
 }
