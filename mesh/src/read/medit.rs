@@ -4,9 +4,8 @@
 
 use super::builder::Builder;
 use super::gmsh::Kind;
-use super::source::{Scalar, Source, quoted};
+use super::source::{Scalar, Source, quoted, vector};
 use super::{Cells, Format, Limits, ReadError, content};
-use glam::DVec3;
 
 /// So many keywords that are not read are told.
 const MOST: usize = 8;
@@ -66,8 +65,7 @@ impl<'b> Reader<'b> {
         self.builder.expect(count, 0)?;
         for _ in 0..count {
             let start = self.source.at;
-            let mut next = || self.source.coordinate(Scalar::F64);
-            let point = DVec3::new(next()?, next()?, if dimension == 3 { next()? } else { 0.0 });
+            let point = vector(dimension as usize, || self.source.coordinate(Scalar::F64))?;
             let index = self.builder.point_at(point, start)?;
             self.group(0, &[index])?;
         }

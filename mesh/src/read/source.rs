@@ -4,7 +4,7 @@ mod numbers;
 mod words;
 
 use super::ReadError;
-pub(super) use numbers::Scalar;
+pub(super) use numbers::{Scalar, vector};
 pub(super) use words::{comma, integer, quoted};
 
 /// The remedy for a file that ends early.
@@ -48,6 +48,10 @@ impl<'b> Source<'b> {
 
     pub(super) fn part(bytes: &'b [u8], start: usize, end: usize) -> Self {
         Self { bytes, at: start, end, coding: Coding::Text, continues: true, comment: None }
+    }
+
+    pub(super) fn binary(bytes: &'b [u8], coding: Coding) -> Self {
+        Self { coding, ..Self::part(bytes, 0, bytes.len()) }
     }
 
     pub(super) fn rest(&self) -> &'b [u8] {

@@ -1,7 +1,7 @@
 //! Stereolithography: triangles, each with its own corners, which are welded here where they are equal.
 
 use super::builder::Builder;
-use super::source::{CUT, Coding, DAMAGED, Scalar, Source};
+use super::source::{CUT, Coding, DAMAGED, Scalar, Source, vector};
 use super::{Cells, Format, Limits, ReadError, content};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -75,8 +75,7 @@ fn text(source: &mut Source<'_>, welder: &mut Welder) -> Result<(), ReadError> {
             if !word.eq_ignore_ascii_case(b"vertex") {
                 return Err(source.wrong(word, "`vertex`"));
             }
-            let mut coordinate = || source.float(Scalar::F64, "a coordinate");
-            *corner = DVec3::new(coordinate()?, coordinate()?, coordinate()?);
+            *corner = vector(3, || source.float(Scalar::F64, "a coordinate"))?;
         }
         for expected in ["endloop", "endfacet"] {
             let mut word = source.word();
@@ -112,8 +111,7 @@ fn binary(bytes: &[u8], source: &mut Source<'_>, welder: &mut Welder) -> Result<
         source.skip(3, Scalar::F32, "a normal")?;
         let mut corners = [DVec3::ZERO; 3];
         for corner in &mut corners {
-            let mut coordinate = || source.float(Scalar::F32, "a coordinate");
-            *corner = DVec3::new(coordinate()?, coordinate()?, coordinate()?);
+            *corner = vector(3, || source.float(Scalar::F32, "a coordinate"))?;
         }
         source.skip(1, Scalar::U16, "two bytes after a triangle")?;
         welder.triangle(corners)?;

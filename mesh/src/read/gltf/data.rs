@@ -1,7 +1,7 @@
 //! The buffers of a glTF file, and the lists of numbers in them.
 
 use super::super::builder::too_many;
-use super::super::source::{CUT, quoted};
+use super::super::source::{CUT, Coding, Scalar, Source, quoted};
 use super::super::{Beside, Limits, ReadError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -55,17 +55,17 @@ impl<'b> Lists<'b> {
             let message = format!("has {found} numbers in each entry of its list {index}; expected {columns}");
             return Err(ReadError::damaged(message));
         }
-        let kind = accessor.data_type();
         // Integers may stand for the numbers from −1 or 0 to 1.
-        let largest = match kind {
-            DataType::I8 => 127.0,
-            DataType::U8 => 255.0,
-            DataType::I16 => 32767.0,
-            DataType::U16 => 65535.0,
-            DataType::U32 | DataType::F32 => 1.0,
+        let (scalar, largest) = match accessor.data_type() {
+            DataType::I8 => (Scalar::I8, 127.0),
+            DataType::U8 => (Scalar::U8, 255.0),
+            DataType::I16 => (Scalar::I16, 32767.0),
+            DataType::U16 => (Scalar::U16, 65535.0),
+            DataType::U32 => (Scalar::U32, 1.0),
+            DataType::F32 => (Scalar::F32, 1.0),
         };
         let mut all = match accessor.view() {
-            Some(view) => self.rows(&view, accessor.offset(), count, columns, kind)?,
+            Some(view) => self.rows(&view, accessor.offset(), count, columns, scalar)?,
             None => {
                 // Zeros stand beside a list with data, which is as long.
                 let bytes: usize = self.buffers.iter().map(|buffer| buffer.len()).sum();
@@ -80,10 +80,10 @@ impl<'b> Lists<'b> {
         };
         if let Some(sparse) = accessor.sparse() {
             let (indices, values) = (sparse.indices(), sparse.values());
-            let kind_of_index = [DataType::U8, DataType::U16, DataType::U32][indices.index_type().size() / 2];
+            let of_index = [Scalar::U8, Scalar::U16, Scalar::U32][indices.index_type().size() / 2];
             let count = sparse.count().min(most);
-            let places = self.rows(&indices.view(), indices.offset(), count, 1, kind_of_index)?;
-            let values = self.rows(&values.view(), values.offset(), count, columns, kind)?;
+            let places = self.rows(&indices.view(), indices.offset(), count, 1, of_index)?;
+            let values = self.rows(&values.view(), values.offset(), count, columns, scalar)?;
             for (place, value) in places.into_iter().zip(values.chunks_exact(columns)) {
                 let start = place as usize * columns;
                 let row = all.get_mut(start..start + columns).ok_or_else(|| {
@@ -105,30 +105,21 @@ impl<'b> Lists<'b> {
         offset: usize,
         count: usize,
         columns: usize,
-        kind: DataType,
+        scalar: Scalar,
     ) -> Result<Vec<f64>, ReadError> {
-        let (buffer, start, size) = (view.buffer().index(), view.offset(), kind.size() * columns);
+        let (buffer, start, size) = (view.buffer().index(), view.offset(), scalar.size() * columns);
         let part = || self.buffers.get(buffer)?.get(start..start.checked_add(view.length())?)?.get(offset..);
         let beyond = || ReadError::new(format!("has data beyond the end of its buffer {buffer}"), CUT);
         let (part, stride) = (part().ok_or_else(beyond)?, view.stride().unwrap_or(size));
         let mut numbers = Vec::new();
         for row in 0..count {
             let bytes = part.get(row.saturating_mul(stride)..).and_then(|rest| rest.get(..size)).ok_or_else(beyond)?;
-            numbers.extend(bytes.chunks_exact(kind.size()).map(|bytes| number(bytes, kind)));
+            let mut source = Source::binary(bytes, Coding::Little);
+            for _ in 0..columns {
+                numbers.push(source.float(scalar, "a number")?);
+            }
         }
         Ok(numbers)
-    }
-}
-
-fn number(bytes: &[u8], kind: DataType) -> f64 {
-    let [a, b, c, d] = std::array::from_fn(|byte| bytes.get(byte).copied().unwrap_or(0));
-    match kind {
-        DataType::I8 => i8::from_le_bytes([a]).into(),
-        DataType::U8 => a.into(),
-        DataType::I16 => i16::from_le_bytes([a, b]).into(),
-        DataType::U16 => u16::from_le_bytes([a, b]).into(),
-        DataType::U32 => u32::from_le_bytes([a, b, c, d]).into(),
-        DataType::F32 => f32::from_le_bytes([a, b, c, d]).into(),
     }
 }
 

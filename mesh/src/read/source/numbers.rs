@@ -50,6 +50,15 @@ impl Scalar {
     }
 }
 
+/// A point or a vector of two or three components, those in the plane with z = 0.
+#[inline]
+pub(in crate::read) fn vector(
+    components: usize,
+    mut next: impl FnMut() -> Result<f64, ReadError>,
+) -> Result<DVec3, ReadError> {
+    Ok(DVec3::new(next()?, next()?, if components == 3 { next()? } else { 0.0 }))
+}
+
 impl Source<'_> {
     /// So many numbers, not looked at: in text, words.
     pub(in crate::read) fn skip(&mut self, count: u64, scalar: Scalar, expected: &str) -> Result<(), ReadError> {
@@ -117,7 +126,7 @@ impl Source<'_> {
     /// The coordinates of a point, one after the other. Those that are no numbers are NaN.
     #[inline]
     pub(in crate::read) fn point(&mut self, scalar: Scalar) -> Result<DVec3, ReadError> {
-        Ok(DVec3::new(self.coordinate(scalar)?, self.coordinate(scalar)?, self.coordinate(scalar)?))
+        vector(3, || self.coordinate(scalar))
     }
 
     /// An integer: an index, for example.

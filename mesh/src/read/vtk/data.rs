@@ -1,9 +1,8 @@
 //! Arrays about points and cells.
 
 use super::{Of, Reader};
-use crate::read::source::{Coding, Scalar, integer};
+use crate::read::source::{Coding, Scalar, integer, vector};
 use crate::read::{ReadError, arrays};
-use glam::DVec3;
 
 impl Reader<'_> {
     /// Reads an array of points or cells. Returns false if it is none.
@@ -78,8 +77,7 @@ impl Reader<'_> {
         } else {
             let mut vectors = Vec::new();
             for _ in 0..expected {
-                let mut next = || self.source.float(scalar, "a component of a vector");
-                vectors.push(DVec3::new(next()?, next()?, if columns == 3 { next()? } else { 0.0 }));
+                vectors.push(vector(columns as usize, || self.source.float(scalar, "a component of a vector"))?);
             }
             self.vectors.insert(name, vectors);
         }

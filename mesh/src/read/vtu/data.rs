@@ -2,7 +2,7 @@
 
 use super::{Array, Layout, Place};
 use crate::read::ReadError;
-use crate::read::source::{CUT, Coding, DAMAGED, Source, quoted};
+use crate::read::source::{CUT, DAMAGED, Source, quoted};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
 use flate2::read::ZlibDecoder;
@@ -50,9 +50,7 @@ impl Layout<'_> {
             Place::Text(start, end) => Source::part(self.bytes, start, end),
             _ => {
                 bytes = self.unpacked(array, name, most)?;
-                let mut source = Source::part(&bytes, 0, bytes.len());
-                source.coding = self.coding;
-                source
+                Source::binary(&bytes, self.coding)
             }
         };
         while !source.is_done() {
@@ -89,13 +87,8 @@ impl Layout<'_> {
         };
         let word = self.header.size();
         let number = |bytes: &[u8], at: usize| {
-            let word = &bytes[at * word..(at + 1) * word];
-            let mut value = [0; 8];
-            value[..word.len()].copy_from_slice(word);
-            if self.coding == Coding::Big {
-                value[..word.len()].reverse();
-            }
-            usize::try_from(u64::from_le_bytes(value)).unwrap_or(usize::MAX)
+            let length = Source::binary(&bytes[at * word..], self.coding).count(self.header, "a length");
+            length.ok().and_then(|length| length.try_into().ok()).unwrap_or(usize::MAX)
         };
         let first = number(&get(word)?, 0);
         if self.packer.is_empty() {

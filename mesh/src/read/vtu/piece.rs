@@ -3,14 +3,9 @@
 use super::polyhedra::Polyhedra;
 use super::{Array, CELL_DATA, ELEMENTS, Layout, POINT_DATA, Piece};
 use crate::read::builder::{Builder, Ghost, beyond};
-use crate::read::source::{Coding, DAMAGED, Source};
+use crate::read::source::{Coding, DAMAGED, Source, vector};
 use crate::read::{ReadError, arrays, kinds};
 use glam::DVec3;
-
-/// A point or a vector by its components, those in the plane with z = 0.
-fn vector(array: &Array, mut next: impl FnMut() -> Result<f64, ReadError>) -> Result<DVec3, ReadError> {
-    Ok(DVec3::new(next()?, next()?, if array.columns == 3 { next()? } else { 0.0 }))
-}
 
 /// A piece that is read, and the points of it.
 struct Reading<'r, 'b> {
@@ -27,7 +22,7 @@ impl Layout<'_> {
             let name = if name.is_empty() { b"Points" } else { &**name };
             self.each(array, name, 3 * self.limits.points, |source| {
                 let at = if source.coding == Coding::Text { source.at } else { array.at };
-                builder.point_at(vector(array, || source.coordinate(array.scalar))?, at).map(drop)
+                builder.point_at(vector(array.columns, || source.coordinate(array.scalar))?, at).map(drop)
             })?;
         }
         let reading = Reading { layout: self, piece, first, count: builder.points() - first };
@@ -61,7 +56,7 @@ impl Reading<'_, '_> {
         let Some(array) = self.get(POINT_DATA, name) else { return Ok(()) };
         let mut vectors = Vec::new();
         self.layout.each(array, &array.name, 3 * self.layout.limits.points, |source| {
-            vectors.push(vector(array, || source.float(array.scalar, expected))?);
+            vectors.push(vector(array.columns, || source.float(array.scalar, expected))?);
             Ok(())
         })?;
         self.check(array, vectors.len(), self.count, false)?;
