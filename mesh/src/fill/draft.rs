@@ -3,29 +3,24 @@
 use super::Cage;
 use glam::DVec3;
 
-/// Elements made from a lattice.
+/// Elements made from a lattice, listed one after the other.
 pub(super) struct Draft {
     pub(super) cage: Cage,
     /// Whether each element stands where the body is thin, and may be filled in part.
     pub(super) is_wide: Vec<bool>,
     /// Whether some elements were left out on trial.
     pub(super) is_bold: bool,
-}
-
-/// Elements that are listed one after the other.
-pub(super) struct Drafting {
-    most: usize,
     /// The number of elements, of which at most `most` are kept.
     count: usize,
+    most: usize,
     nodes: Nodes,
-    draft: Draft,
 }
 
-impl Drafting {
+impl Draft {
     /// No elements between so many points.
     pub(super) fn new(convex: bool, points: usize, most: usize) -> Self {
-        let draft = Draft { cage: Cage { convex, ..Cage::default() }, is_wide: Vec::new(), is_bold: false };
-        Self { most, count: 0, nodes: Nodes::new(points), draft }
+        let cage = Cage { convex, ..Cage::default() };
+        Self { cage, is_wide: Vec::new(), is_bold: false, count: 0, most, nodes: Nodes::new(points) }
     }
 
     /// Appends an element between points, which are at places (m).
@@ -35,18 +30,19 @@ impl Drafting {
             return;
         }
         let element: Vec<u32> = corners.iter().map(|&corner| self.nodes.of(corner, || place(corner))).collect();
-        self.draft.cage.elements.push(&element);
-        self.draft.is_wide.push(is_wide);
+        self.cage.elements.push(&element);
+        self.is_wide.push(is_wide);
     }
 
-    /// The elements, or their number if there are more than allowed.
-    pub(super) fn finished(mut self) -> Result<Draft, usize> {
-        self.draft.cage.nodes = self.nodes.places;
-        if self.count > self.most { Err(self.count) } else { Ok(self.draft) }
+    /// The elements with their nodes, or their number if there are more than allowed.
+    pub(super) fn finished(mut self) -> Result<Self, usize> {
+        self.cage.nodes = std::mem::take(&mut self.nodes).places;
+        if self.count > self.most { Err(self.count) } else { Ok(self) }
     }
 }
 
 /// Points numbered as nodes in the order in which they are met.
+#[derive(Default)]
 pub(super) struct Nodes {
     /// The number of each point, or [`u32::MAX`].
     numbers: Vec<u32>,

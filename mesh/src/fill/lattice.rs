@@ -51,8 +51,7 @@ pub(super) fn check(surface: &Surface, fill: Fill, side: f64, most: usize) -> Re
     let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
     if !(needed <= slack * most as f64 && is_sane) {
         // For all it is known yet, no cubes may be joined at a larger side.
-        let other = |side| each.max(1.0) * boxed(&measures, side);
-        return Err(refused(side, needed.max(rows / 16.0), most, "about ", &measures, other));
+        return Err(refused(&measures, side, needed.max(rows / 16.0), most, "about ", each.max(1.0)));
     }
     if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
         // All points of the lattice are listed, with a layer of cubes outside.
@@ -160,23 +159,14 @@ fn boxed(measures: &Measures, side: f64) -> f64 {
 /// The error for a fill that would need so many elements.
 pub(super) fn too_many(measures: &Measures, side: f64, needed: f64, most: usize, about: &str) -> FillError {
     // The estimate, scaled to what is known, tells how the number falls with the side.
-    let factor = needed / boxed(measures, side);
-    refused(side, needed, most, about, measures, |side| factor * boxed(measures, side))
+    refused(measures, side, needed, most, about, needed / boxed(measures, side))
 }
 
-/// The error for a fill that would need so many elements, with a function that tells about how many are needed for other
-/// sides.
-fn refused(
-    side: f64,
-    needed: f64,
-    most: usize,
-    about: &str,
-    measures: &Measures,
-    other: impl Fn(f64) -> f64,
-) -> FillError {
+/// The error for a fill that would need so many elements, with so many for each cube at other sides.
+fn refused(measures: &Measures, side: f64, needed: f64, most: usize, about: &str, each: f64) -> FillError {
     let start = side.max(1e-9 * (measures.high - measures.low).max_element());
     let tries = std::iter::successors(Some(start), |side| Some(1.02 * side)).skip(1).take(2000).map(rounded_up);
-    let mut fitting = tries.filter(|&side| other(side) <= 0.95 * most as f64);
+    let mut fitting = tries.filter(|&side| each * boxed(measures, side) <= 0.95 * most as f64);
     let fitting = fitting.next();
     let remedy = match fitting {
         Some(side) => format!("use a side of {side} or more, or allow more elements"),

@@ -18,7 +18,7 @@
 mod inner;
 
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
-use super::draft::{Draft, Drafting};
+use super::draft::Draft;
 use super::lattice::too_many;
 use super::range;
 use super::{FillError, Filled, embed};
@@ -216,7 +216,7 @@ impl<'l> Cutting<'l> {
 
     /// The elements; if they are alone, those that are small, too.
     fn elements(&self, filled: Option<&[f64]>, most: usize, is_alone: bool) -> Result<Draft, usize> {
-        let mut drafting = Drafting::new(true, self.lattice.len() + self.cuts.parts.len() + self.inner.len(), most);
+        let mut draft = Draft::new(true, self.lattice.len() + self.cuts.parts.len() + self.inner.len(), most);
         let mut nodes = Vec::new();
         for cube in 0..self.lattice.cubes.element_product() {
             let low = self.lattice.lowest(cube);
@@ -241,10 +241,10 @@ impl<'l> Cutting<'l> {
             let is_doubtful = inside().all(|corner| self.cuts.on.binary_search(&corner).is_ok());
             let is_element = if has_inside { !(is_doubtful && is_beside()) } else { self.is_element(&nodes, is_alone) };
             if is_element {
-                drafting.push(&nodes, thin > 0, |node| self.lattice.place(self.position(node)));
+                draft.push(&nodes, thin > 0, |node| self.lattice.place(self.position(node)));
             }
         }
-        drafting.finished()
+        draft.finished()
     }
 
     /// Whether nodes of a thin part are an element, or would be if it were the only one.

@@ -5,7 +5,7 @@
 //! close to a cut have been moved to it. Dihedral angles are between 10.7° and 164.8°.
 
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
-use super::draft::{Draft, Drafting};
+use super::draft::Draft;
 use super::lattice::too_many;
 use super::tighten::{Near, cosines};
 use super::{FillError, Filled, embed};
@@ -108,7 +108,7 @@ impl<'l> Stuffing<'l> {
 
     /// All tetrahedra, or their number if there are more than `most`.
     fn draft(&self, wide: &[u8], most: usize) -> Result<Draft, usize> {
-        let mut drafting = Drafting::new(false, self.lattice.len() + self.cuts.parts.len(), most);
+        let mut draft = Draft::new(false, self.lattice.len() + self.cuts.parts.len(), most);
         for cube in 0..self.lattice.cubes.element_product() {
             let middle = self.lattice.lowest(cube) + 1;
             for axis in 0..AXES {
@@ -119,15 +119,15 @@ impl<'l> Stuffing<'l> {
                 let [along, u, v] = [0, 1, 2].map(|turn| EDGES[(axis + turn) % AXES] / 2);
                 let ring = [-u - v, u - v, u + v, v - u].map(|corner| middle + along + corner);
                 for start in 0..4 {
-                    self.cut([middle, beside, ring[start], ring[(start + 1) % 4]], wide, &mut drafting);
+                    self.cut([middle, beside, ring[start], ring[(start + 1) % 4]], wide, &mut draft);
                 }
             }
         }
-        drafting.finished()
+        draft.finished()
     }
 
     /// Appends the tetrahedra of the part inside of a tetrahedron of the lattice.
-    fn cut(&self, corners: [IVec3; 4], wide: &[u8], drafting: &mut Drafting) {
+    fn cut(&self, corners: [IVec3; 4], wide: &[u8], draft: &mut Draft) {
         let place = |corner: IVec3| self.places[self.lattice.index(corner)];
         let count = |side| corners.iter().filter(|&&corner| place(corner) == side).count();
         let (ins, outs) = (count(Where::Inside), count(Where::Outside));
@@ -143,7 +143,7 @@ impl<'l> Stuffing<'l> {
         let [a, b, c, d] = sorted;
         let mut add = |corners: [Corner; 4]| {
             let is_wide = corners.iter().any(|&corner| self.ends(corner).into_iter().any(|end| wide[end] > 0));
-            drafting.push(&ordered(corners), is_wide, |node| self.lattice.place(self.position(node)));
+            draft.push(&ordered(corners), is_wide, |node| self.lattice.place(self.position(node)));
         };
         let (whole, cut) = (|point| self.whole(point), |inside, outside| self.cut_of(inside, outside));
         match [ins, outs] {
