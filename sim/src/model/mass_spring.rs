@@ -207,8 +207,8 @@ impl ElasticModel for MassSpring {
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         let (model, body) = (self.clone(), Arc::clone(body));
         match self.breaking() {
-            Some(law) => Box::new(Late::new(Box::new(move || ByLaw::new(law, &body)))),
-            None => Box::new(Late::new(Box::new(move || SpringForces::new(model, &body)))),
+            Some(law) => Late::boxed(move || ByLaw::new(law, &body)),
+            None => Late::boxed(move || SpringForces::new(model, &body)),
         }
     }
 }

@@ -144,27 +144,33 @@ pub trait Projection: Send + Sync {
 
 /// Forces that are prepared at their first use. Vectorised steps need none, and forces of large bodies take several times the
 /// memory of a state.
-type Late<F> = LazyLock<F, Box<dyn FnOnce() -> F + Send>>;
+struct Late<F>(LazyLock<F, Box<dyn FnOnce() -> F + Send>>);
+
+impl<F: ForceModel + 'static> Late<F> {
+    fn boxed(prepare: impl FnOnce() -> F + Send + 'static) -> Box<dyn ForceModel> {
+        Box::new(Self(LazyLock::new(Box::new(prepare))))
+    }
+}
 
 impl<F: ForceModel> ForceModel for Late<F> {
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
-        (**self).add_forces(at, memory, next, scratch, forces);
+        self.0.add_forces(at, memory, next, scratch, forces);
     }
 
     fn is_damped(&self) -> bool {
-        (**self).is_damped()
+        self.0.is_damped()
     }
 
     fn depends_on_history(&self) -> bool {
-        (**self).depends_on_history()
+        self.0.depends_on_history()
     }
 
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {
-        (**self).report(at, memory, share)
+        self.0.report(at, memory, share)
     }
 
     fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
-        (**self).residuals(position, memory)
+        self.0.residuals(position, memory)
     }
 }
 

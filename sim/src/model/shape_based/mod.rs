@@ -285,7 +285,7 @@ impl ElasticModel for ShapeBased {
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         let (model, body) = (self.clone(), Arc::clone(body));
-        Box::new(Late::new(Box::new(move || Elements::new(model, &body))))
+        Late::boxed(move || Elements::new(model, &body))
     }
 }
 
