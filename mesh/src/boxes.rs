@@ -172,7 +172,11 @@ mod tests {
             let [a, b, c] = triangle;
             for at in 0..1000u32 {
                 let point = DVec3::from_array([at % 10, at / 10 % 10, at / 100].map(|n| f64::from(n) * 0.3 - 1.2));
-                let least = nearest_of(triangle, point).distance(point);
+                let place = nearest_of(triangle, point);
+                let areas = [[a, b], [b, c], [c, a]].map(|[from, to]| (from - place).cross(to - place).length());
+                let whole = (b - a).cross(c - a).length();
+                assert!((areas.iter().sum::<f64>() - whole).abs() < 1e-12, "{point}: {place} is not in the triangle");
+                let least = place.distance(point);
                 let all = (0..=20).flat_map(|i| (0..=20 - i).map(move |j| [i, j].map(f64::from)));
                 let all = all.map(|[i, j]| a + (b - a) * i / 20.0 + (c - a) * j / 20.0);
                 let nearest = all.map(|at| at.distance(point)).fold(f64::INFINITY, f64::min);

@@ -90,8 +90,11 @@ pub(super) fn edge_table(kind: ElementKind) -> &'static [[u8; 2]] {
     }
 }
 
-/// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside; the only face of a
-/// polygon is itself.
+/// Calls `visit` with the nodes of each face of one element, counter-clockwise seen from outside. The only face of a
+/// polygon is itself; segments and elements of other kinds have none here.
+///
+/// # Panics
+/// If there are fewer nodes than the kind has.
 pub fn for_each_face(kind: ElementKind, nodes: &[u32], mut visit: impl FnMut(&[u32])) {
     if kind == ElementKind::Polygon {
         return visit(nodes);

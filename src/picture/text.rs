@@ -17,6 +17,16 @@ pub(crate) enum Weight {
     SemiBold,
 }
 
+impl Weight {
+    /// The number of its built-in font.
+    fn built_in(self) -> u8 {
+        match self {
+            Self::Regular => 0,
+            Self::SemiBold => 1,
+        }
+    }
+}
+
 /// One glyph of a line of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Glyph {
@@ -151,7 +161,7 @@ impl Fonts {
 
     /// The fonts in which a text of a weight is looked up, in order.
     fn order(&self, weight: Weight) -> impl Iterator<Item = u8> {
-        let built_in = weight as u8;
+        let built_in = weight.built_in();
         // The scene's own are stored after the built-in ones; a single one serves both weights.
         let own = match self.faces.len() {
             2 => None,

@@ -174,9 +174,15 @@ fn a_thickness_without_a_surface_to_meet() {
     let alone = alone.join("\n") + "\n";
     let thick = |world: &str| world.replace("offset = [1, 0, 0]", "offset = [1, 0, 0], thickness = 0.01");
     good(&alone);
-    let idle = "6:63 the thickness of the body \"cube\" changes nothing: it meets half-spaces with its nodes remove it";
+    let idle = "7:99 the thickness of the body \"cube\" changes nothing: nothing meets its surface, and floors and plates meet its nodes remove it";
     expect(&bad(&thick(&alone)), 0, idle);
     good(&thick(&alone).replace("thickness", "self_contact = true, thickness"));
+    // Bodies of different runs do not meet; those of one run do.
+    let other = alone.replace(
+        "run = [",
+        "run = [{ name = 'Bar', bodies = ['bar'], model = { kind = 'shape-based', stiffness = 1e4 } },",
+    );
+    expect(&bad(&thick(&other)), 0, idle);
     good(&thick(WORLD));
 }
 
@@ -247,7 +253,7 @@ fn bodies_are_moved_apart_where_a_scene_says_so() {
     let lid = "{ kind = 'plate', point = [0, 0.08, 0], normal = [0, -1, 0] }";
     let shut = WORLD.replace("height = -1", "height = 0.02").replace("obstacle = [", &format!("obstacle = [{lid},"));
     let found = bad(&format!("{shut}contact.separate = true")).to_string();
-    assert!(found.contains("; `contact.separate` found no way for it"), "{found}");
+    assert!(found.contains("; `contact.separate` did not part them"), "{found}");
     // Where nothing overlaps nothing moves, and nodes cannot be separated.
     assert_eq!(good(&format!("{WORLD}contact.separate = true")).bodies[1].separated, glam::DVec3::ZERO);
     let idle = "1:1 `contact.separate` has no effect, as `contact.rule` is \"nodes\"";

@@ -1,6 +1,6 @@
 //! The cubes of cells, which may be coarser away from the surface.
 //!
-//! Then eight cells without surface are joined to one cube. It lists the nodes of smaller neighbours that hang in the middles of its
+//! Where they may, eight cells without surface are joined to one cube. It lists the nodes of smaller neighbours that hang in the middles of its
 //! faces and edges: to the shape model they are nodes like others. The surface is in the smaller cubes alone, where its weights are
 //! those of plain cubes.
 //!
@@ -14,7 +14,7 @@ use glam::DVec3;
 use localshape_sim::IndexLists;
 use std::collections::HashMap;
 
-/// A cube of several cells.
+/// A cube of one cell, or of several that are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Cube {
     /// The lowest cell, and the number of cells along a side.

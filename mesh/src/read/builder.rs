@@ -145,8 +145,8 @@ impl Builder {
 
     /// Adds a cell whose corners, if it is a hexahedron, are listed around one side and then around the other.
     pub(super) fn around(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
-        match corners.first_chunk() {
-            Some(all) if kind == CellKind::Hexahedron => self.cell(kind, &along(all)),
+        match corners.try_into() {
+            Ok(all) if kind == CellKind::Hexahedron => self.cell(kind, &along(all)),
             _ => self.cell(kind, corners),
         }
     }

@@ -4,7 +4,7 @@ use super::ReadError;
 use super::cells::along;
 use super::collapsed::{self, FLAT};
 use glam::DVec3;
-use localshape_sim::geometry::{bounds, volume_by_faces};
+use localshape_sim::geometry::volume_by_faces;
 use localshape_sim::{Dimension, ElementKind, IndexLists};
 use std::collections::HashSet;
 
@@ -72,8 +72,9 @@ impl Parts {
 
     /// Puts the corners of a cell into the expected order. Returns false if it has no area or volume.
     fn order(&mut self, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) -> bool {
-        let (low, high) = bounds(&cell.iter().map(|&corner| points[corner as usize]).collect::<Vec<_>>());
-        let size = (high - low).max_element();
+        let corners = || cell.iter().map(|&corner| points[corner as usize]);
+        let (low, high) = (corners().reduce(DVec3::min), corners().reduce(DVec3::max));
+        let size = (high.unwrap_or_default() - low.unwrap_or_default()).max_element();
         let whole = if kind == ElementKind::Polygon { size * size } else { size * size * size };
         let mut measure = volume_by_faces(kind, cell, points);
         // A cell that is listed along its axes where it should be listed around, or the other way, crosses itself: it is nearly flat.

@@ -1,6 +1,6 @@
 //! The closest points of many candidates of contact at once, in lanes.
 
-use super::closest;
+use super::closest::{self, Nearest};
 use super::lanewise::{self, Vector};
 use super::surface::Placed;
 use crate::lanes::{Lanes, MOST, Work};
@@ -23,7 +23,7 @@ pub(super) struct Found {
 impl Found {
     /// That of a point and a segment.
     pub(super) fn on_segment(point: DVec3, ends: [DVec3; 2]) -> Self {
-        let (shares, part) = closest::of_segment(point, ends);
+        let Nearest { shares, part } = closest::of_segment(point, ends);
         let way = point - (ends[0] * shares[0] + ends[1] * shares[1]);
         Self { shares, part, way, distance: way.length() }
     }
@@ -140,7 +140,7 @@ mod tests {
             set.run(PointsAndFacets { of, features: &features, found: &mut found });
             for (found, &[point, facet]) in found.iter().zip(&features) {
                 let corners = surface.facets[facet as usize].corners.map(|corner| of[1].point(corner));
-                let (shares, part) = closest::of_triangle(of[0].point(point), corners);
+                let Nearest { shares, part } = closest::of_triangle(of[0].point(point), corners);
                 assert_eq!((bits(&found.shares), found.part), (bits(&shares), part));
                 assert_eq!(bits(&[found.way.length()]), bits(&[found.distance]));
             }

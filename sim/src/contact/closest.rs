@@ -28,25 +28,34 @@ impl On {
     }
 }
 
-/// The closest point of a segment: the shares of its corners, and the number of the part on which it lies.
-pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> ([f64; 3], f64) {
+/// The closest point of a segment or triangle to a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    /// The weight of each corner, with the sum 1.
+    pub(super) shares: [f64; 3],
+    /// The number of the part on which it lies, as [`On::of`] reads it.
+    pub(super) part: f64,
+}
+
+/// The closest point of a segment.
+pub(super) fn of_segment(point: DVec3, [a, b]: [DVec3; 2]) -> Nearest {
     let along = b - a;
     let (way, whole) = (along.dot(point - a), along.length_squared());
     if way <= 0.0 || whole == 0.0 {
-        return ([1.0, 0.0, 0.0], 0.0);
+        return Nearest { shares: [1.0, 0.0, 0.0], part: 0.0 };
     }
     if way >= whole {
-        return ([0.0, 1.0, 0.0], 1.0);
+        return Nearest { shares: [0.0, 1.0, 0.0], part: 1.0 };
     }
     let share = way / whole;
-    ([1.0 - share, share, 0.0], INSIDE)
+    Nearest { shares: [1.0 - share, share, 0.0], part: INSIDE }
 }
 
-/// The same of a triangle.
-pub(super) fn of_triangle(point: DVec3, corners: [DVec3; 3]) -> ([f64; 3], f64) {
+/// The closest point of a triangle.
+pub(super) fn of_triangle(point: DVec3, corners: [DVec3; 3]) -> Nearest {
     let lanes = |at: DVec3| at.to_array().map(One::splat);
     let (shares, part) = in_triangle(lanes(point), corners.map(lanes));
-    (shares.map(|share| share.to_array()[0]), part.to_array()[0])
+    Nearest { shares: shares.map(|share| share.to_array()[0]), part: part.to_array()[0] }
 }
 
 /// The closest points of two segments: how far along each they are, from 0 to 1.
@@ -83,7 +92,7 @@ mod tests {
         let mut seen = [0; 3];
         for _ in 0..2000 {
             let (point, corners) = (next() * 1.5, [next(), next(), next()]);
-            let (shares, part) = of_triangle(point, corners);
+            let Nearest { shares, part } = of_triangle(point, corners);
             let (at, on) = (mix(shares, corners), On::of(part));
             let distance = at.distance(point);
             for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {

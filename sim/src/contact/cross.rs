@@ -90,8 +90,8 @@ impl Corners {
     pub(super) fn distance_to(&self, point: DVec3) -> f64 {
         let [a, b, _] = self.at;
         let shares = match self.count {
-            3 => closest::of_triangle(point, self.at).0,
-            2 => closest::of_segment(point, [a, b]).0,
+            3 => closest::of_triangle(point, self.at).shares,
+            2 => closest::of_segment(point, [a, b]).shares,
             _ => [1.0, 0.0, 0.0],
         };
         self.at.iter().zip(shares).map(|(&corner, share)| corner * share).sum::<DVec3>().distance(point)

@@ -25,7 +25,7 @@ impl Features {
     fn weights(self, [a, b, c, d]: [DVec3; 4]) -> [f64; 4] {
         match self {
             Self::VertexFace => {
-                let ([u, v, w], _) = of_triangle(a, [b, c, d]);
+                let [u, v, w] = of_triangle(a, [b, c, d]).shares;
                 [1.0, -u, -v, -w]
             }
             Self::EdgeEdge => {
@@ -103,7 +103,7 @@ impl Features {
             return None;
         }
         let law = Law { gap: 0.05 * from[2].distance(from[3]), restitution: 0.0, friction: 0.0 };
-        let touch = Touch { normal: way / distance, distance, is_whole: true, drag: DVec3::ZERO, terms: [0, 4] };
+        let touch = Touch { normal: way / distance, distance, keeps_law: true, drag: DVec3::ZERO, terms: [0, 4] };
         let motion = [0, 1, 2, 3].map(|at| Motion { inverse_mass: 1.0, ..Motion::held(to[at] - from[at]) });
         let mut ends = Ends { position: to.to_vec(), motion: motion.to_vec(), step: 1.0, ..Ends::default() };
         ends.resolve(law, &touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));

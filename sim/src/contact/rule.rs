@@ -63,9 +63,9 @@ pub(super) struct Touch {
     pub(super) normal: DVec3,
     /// Their distance at the start of the step (m).
     pub(super) distance: f64,
-    /// Whether the law holds as it is: the distance is a local minimum on both surfaces, or they are of one body, whose folds press on each
+    /// Whether the whole law holds: the distance is a local minimum on both surfaces, or they are of one body, whose folds press on each
     /// other along lines that lean.
-    pub(super) is_whole: bool,
+    pub(super) keeps_law: bool,
     /// The velocity (m/s) by which the surface of a round obstacle that turns moves along at the contact, beside that of its axis.
     pub(super) drag: DVec3,
     /// Where its terms begin and end.
@@ -150,8 +150,8 @@ impl Ends {
 
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.
     pub(super) fn resolve(&mut self, law: Law, touch: &Touch, terms: &[Term]) -> DVec3 {
-        let Touch { normal, distance, is_whole, drag, .. } = *touch;
-        let Law { gap, restitution, friction } = if is_whole { law } else { law.of_nearly_least() };
+        let Touch { normal, distance, keeps_law, drag, .. } = *touch;
+        let Law { gap, restitution, friction } = if keeps_law { law } else { law.of_nearly_least() };
         let way: DVec3 = terms.iter().map(|&Term { node, weight }| self.place(node) * weight).sum();
         let reached = normal.dot(way);
         if reached >= gap {

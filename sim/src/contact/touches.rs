@@ -59,7 +59,34 @@ impl Touches {
         let out = normal * other.thickness;
         let drag = seen.interval.map_or(DVec3::ZERO, |interval| seen.stage.drag(of[1], interval, there, out));
         let terms = [begin, self.terms.len()].map(|at| at as u32);
-        let is_whole = closest.is_least || of[0] == of[1];
-        self.all.push(Touch { normal, distance, is_whole, drag, terms });
+        let keeps_law = closest.is_least || of[0] == of[1];
+        self.all.push(Touch { normal, distance, keeps_law, drag, terms });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Contacts, Surfaces};
+    use super::*;
+    use crate::body::Body;
+    use std::sync::Arc;
+
+    /// Two bodies whose points are a local minimum only nearly keep a part of the law, folds of one body all of it.
+    #[test]
+    fn folds_of_one_body_keep_the_whole_law() {
+        let corner = |at: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(at >> axis & 1)));
+        let nodes: Vec<u32> = (0..8).collect();
+        let cube = Body::builder((0..8).map(corner).collect()).elements([&nodes[..]].into_iter().collect());
+        let cube = Arc::new(cube.build().expect("a cube"));
+        let both = Surfaces::new(&[Arc::clone(&cube), cube], &[], &Contacts::default());
+        let seen = Seen { stage: &both.stage, start: &[], interval: None };
+        let keeps_law = |of: [usize; 2], is_least: bool| {
+            let shares = [[0.5, 0.5, 0.0]; 2];
+            let closest = Closest { here: DVec3::ZERO, way: DVec3::X, shares, rests: 0.0, is_least };
+            let mut touches = Touches::default();
+            touches.push(Kind::Edges, of, &seen, [0, 5], &closest);
+            touches.all[0].keeps_law
+        };
+        assert!(keeps_law([0, 0], false) && !keeps_law([0, 1], false) && keeps_law([0, 1], true));
     }
 }

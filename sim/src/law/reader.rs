@@ -31,8 +31,16 @@ pub(crate) struct Reader<L> {
 
 impl<L: Lanes> Reader<L> {
     pub(crate) fn new() -> Self {
-        let (offsets, now, rest, constants, memory, of_element, of_corner) = Default::default();
-        Self { corners: 0, offsets, now, rest, constants, memory, of_element, of_corner }
+        Self {
+            corners: 0,
+            offsets: Vec::new(),
+            now: Vec::new(),
+            rest: Vec::new(),
+            constants: Vec::new(),
+            memory: Vec::new(),
+            of_element: Vec::new(),
+            of_corner: Vec::new(),
+        }
     }
 
     /// Reads elements at rest, and with positions (m) and velocities (m/s) of the nodes; without velocities they are at rest.

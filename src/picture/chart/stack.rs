@@ -309,8 +309,11 @@ impl Stack {
     }
 
     /// The places of the charts among all, in the order in which they are drawn, each with the series of runs.
-    pub(super) fn runs(&self) -> impl Iterator<Item = (usize, &[Series])> {
-        self.quantities.iter().map(|one| (one.at, &one.series[..one.runs]))
+    pub(super) fn into_runs(self) -> impl Iterator<Item = (usize, Vec<Series>)> {
+        self.quantities.into_iter().map(|mut one| {
+            one.series.truncate(one.runs);
+            (one.at, one.series)
+        })
     }
 
     /// Draws as many charts as have room, over a span of time whose scale may change between (s): what lies below the

@@ -85,8 +85,8 @@ impl Timeline {
             stack.draw([&mut ground, &mut curves], &room, time, &flags)
         });
         let still = [ground, curves].map(|writer| writer.items().collect());
-        let shown = stack.runs().zip(charts.unwrap_or_default());
-        let shown = shown.map(|((at, series), (chart, place))| (plots[at].clone(), series.to_vec(), chart, place));
+        let shown = stack.into_runs().zip(charts.unwrap_or_default());
+        let shown = shown.map(|((at, series), (chart, place))| (plots[at].clone(), series, chart, place));
         Self { charts: shown.collect(), events, still }
     }
 

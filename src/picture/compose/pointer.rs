@@ -11,8 +11,8 @@ use glam::{DVec2, DVec3};
 const FAST: f64 = 0.25;
 
 impl Draft<'_> {
-    /// The arrow of an object at a point (m) with a velocity and a greatest speed at any time (m/s), from that point or, with `arriving`, to it, at a distance (px in the reference
-    /// picture). It grows with the square root of the speed, so that it fades gently, and ends where its
+    /// The arrow of an object at a point (m) with a velocity and a greatest speed at any time (m/s), from that point or,
+    /// with `arriving`, to it, at a distance (px in the reference picture). It grows with the square root of the speed, so that it fades gently, and ends where its
     /// `room` ends. A resting object has none.
     pub(super) fn pointer(
         &self,

@@ -131,8 +131,8 @@ pub(in crate::scene) struct BodyFile {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     #[schemars(extend("default" = false))]
     pub(in crate::scene) self_contact: bool,
-    /// The distance that its surface keeps from an obstacle, and half of that between two such bodies (m), at most a cell. Default: the
-    /// fortieth part of the mean length of the edges of its surface.
+    /// The distance that its surface keeps from an obstacle, and half of that between two such bodies (m), at most a cell. Floors and plates
+    /// meet nodes, unless the surface is carried. Default: the fortieth part of the mean length of the edges of its surface.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) thickness: Option<f64>,
     /// Mass of every node (kg). Default: 1.

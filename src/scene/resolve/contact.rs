@@ -85,15 +85,17 @@ pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &Collector
     }
 }
 
-/// Reports thicknesses of bodies that meet half-spaces alone, with their nodes.
+/// Reports thicknesses of bodies whose surface meets nothing: their nodes meet half-spaces.
 pub(super) fn check_idle_thickness(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>) {
     let has_solids = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
     for (at, (body, own)) in scene.bodies.iter().zip(&contacts.bodies).enumerate() {
         let meets = |run: &Run| run.recording.is_none() && run.of.len() > 1 && run.of.contains(&at);
         let counts = has_solids || own.itself || body.body.carried().is_some() || scene.runs.iter().any(meets);
         if own.thickness.is_some() && !counts {
-            let message =
-                format!("the thickness of {} changes nothing: it meets half-spaces with its nodes", body.in_words());
+            let message = format!(
+                "the thickness of {} changes nothing: nothing meets its surface, and floors and plates meet its nodes",
+                body.in_words()
+            );
             typed.place(at).to("thickness").wrong(message, "remove it");
         }
     }
@@ -311,10 +313,10 @@ fn why(overlap: &Overlap) -> String {
     }
 }
 
-/// What else than moving a body helps.
+/// What else than moving a body helps, with the punctuation before it.
 fn or_separate(overlap: &Overlap, typed: &Typed<'_>) -> &'static str {
     match overlap.depth {
-        _ if typed.file.separates() => "; `contact.separate` found no way for it",
+        _ if typed.file.separates() => "; `contact.separate` did not part them",
         ..0.0 => ", write contact.separate = true, or give their `contact.pair` a smaller `thickness`",
         _ => ", or write contact.separate = true",
     }

@@ -6,7 +6,7 @@ use super::{BEYOND, CLOSE, Cutting, LEAST, directions};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-/// A node in a face or in a cube: the place of its lowest corner times 4, and the axis across the face, or 3; and where the node is, in halves
+/// A node in a face or in a cube, or a place for one: the place of its lowest corner times 4, and the axis across the face, or 3; and where the node is, in halves
 /// of the side from the origin.
 pub(super) type Inner = (usize, DVec3);
 
