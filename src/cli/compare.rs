@@ -1,18 +1,18 @@
 //! `compare`: whether pictures differ, and whether the simulation or the drawing changed.
 
 use super::console;
-use super::failure::{Failure, Status, with_causes};
+use super::failure::{Failure, Status};
 use super::options::PrintOptions;
 #[cfg(feature = "render")]
 use super::{failure::warn, figure::warn_of_figure, interrupt};
+use crate::golden::{Comparison, ComparisonError};
 #[cfg(feature = "render")]
 use crate::golden::{
-    AcceptError, Golden,
+    Golden,
     device::usual_gpu,
     draw::{DrawError, Subject, draw},
     drawing::PICTURES,
 };
-use crate::golden::{Comparison, ComparisonError};
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::output::{FolderLock, OutputError, folder_of, is_folder, write_whole};
@@ -165,18 +165,11 @@ impl Compare {
 impl From<ComparisonError> for Failure {
     fn from(error: ComparisonError) -> Self {
         match error {
-            ComparisonError::Absent { .. } | ComparisonError::Read { .. } => Self::files(with_causes(&error)),
-            error => Self::usage(error.to_string()),
-        }
-    }
-}
-
-#[cfg(feature = "render")]
-impl From<AcceptError> for Failure {
-    fn from(error: AcceptError) -> Self {
-        match error {
-            AcceptError::Undrawn => Self::new(Status::Difference, &error),
-            AcceptError::Write(error) => error.into(),
+            ComparisonError::Absent { .. } => Self::files(error.to_string()),
+            ComparisonError::File(error) => error.into(),
+            #[cfg(feature = "render")]
+            ComparisonError::Undrawn => Self::new(Status::Difference, &error),
+            ComparisonError::Wrong(message) => Self::usage(message),
         }
     }
 }

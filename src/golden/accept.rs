@@ -1,6 +1,7 @@
 //! Compares a scene with its golden, and accepts its results as the expected ones.
 
 use super::comparison::{Comparison, paired};
+use super::error::ComparisonError;
 use super::folder::{Drawn, Golden};
 use super::keys;
 use super::record::RECORD_FILE;
@@ -72,8 +73,8 @@ impl Comparison {
     ///
     /// # Errors
     /// If there are no pictures, or a file cannot be written.
-    pub(crate) fn accept(&self, golden: &Golden, drawn: &Drawn) -> Result<Vec<String>, AcceptError> {
-        let pictures = drawn.pictures.as_ref().ok_or(AcceptError::Undrawn)?;
+    pub(crate) fn accept(&self, golden: &Golden, drawn: &Drawn) -> Result<Vec<String>, ComparisonError> {
+        let pictures = drawn.pictures.as_ref().ok_or(ComparisonError::Undrawn)?;
         let folder = &golden.folder;
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let _lock = FolderLock::beside_others(folder);
@@ -115,13 +116,4 @@ fn typed(path: &Path) -> String {
     // Prefixed so that a name which begins with - is not taken for an option.
     let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
     shell::word(&path)
-}
-
-/// Why nothing was accepted.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum AcceptError {
-    #[error("nothing was accepted: without a graphics adapter there are no pictures")]
-    Undrawn,
-    #[error(transparent)]
-    Write(#[from] OutputError),
 }

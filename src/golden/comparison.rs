@@ -6,7 +6,7 @@ use super::record::RECORD_FILE;
 use super::source::{Pictures, Source, pictures_in};
 use super::states::{Moved, State, States, moved};
 use super::verdict::{Compared, Verdict};
-use crate::output::{Shown, Tags};
+use crate::output::{OutputError, Shown, Tags};
 use crate::reading::beside::name_of;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -55,7 +55,7 @@ impl Comparison {
         let is_folder = |path: &Path| match path.metadata() {
             Ok(found) => Ok(found.is_dir()),
             Err(source) if source.kind() == ErrorKind::NotFound => Err(ComparisonError::Absent { path: path.into() }),
-            Err(source) => Err(ComparisonError::Read { path: path.into(), source }),
+            Err(source) => Err(OutputError::reading(path)(source).into()),
         };
         let are_folders = [is_folder(expected)?, is_folder(actual)?];
         let pairs: Vec<(String, [Option<Source>; 2])> = match are_folders {

@@ -32,8 +32,6 @@ mod suite;
 mod tolerance;
 mod verdict;
 
-#[cfg(feature = "render")]
-pub(crate) use accept::AcceptError;
 pub(crate) use comparison::Comparison;
 pub(crate) use error::ComparisonError;
 #[cfg(feature = "render")]

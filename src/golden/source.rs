@@ -1,7 +1,8 @@
 //! Pictures of one side: files, or pictures drawn for a comparison.
 
 use super::error::ComparisonError;
-use super::picture::{PictureError, Pixels, file};
+use super::picture::{PictureError, file};
+use crate::output::OutputError;
 use crate::reading::beside::entries;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -18,10 +19,6 @@ pub(super) enum Source {
 }
 
 impl Source {
-    pub(super) fn pixels(&self) -> Result<Pixels, PictureError> {
-        Pixels::from_bytes(&self.bytes()?)
-    }
-
     /// The bytes of the file.
     pub(super) fn bytes(&self) -> Result<Cow<'_, [u8]>, PictureError> {
         match self {
@@ -36,16 +33,15 @@ pub(super) type Pictures = BTreeMap<String, Source>;
 
 /// The PNG files in a folder.
 pub(super) fn pictures_in(folder: &Path) -> Result<Pictures, ComparisonError> {
-    let failed = |source| ComparisonError::Read { path: folder.into(), source };
     let mut pictures = Pictures::new();
-    for path in entries(folder).map_err(failed)? {
+    for path in entries(folder).map_err(OutputError::reading(folder))? {
         let Some(name) = path.file_name() else { continue };
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             continue;
         }
         let Some(name) = name.to_str().map(str::to_owned) else {
             let source = std::io::Error::new(ErrorKind::InvalidData, "its name is not UTF-8; rename it");
-            return Err(ComparisonError::Read { path, source });
+            return Err(OutputError::Read { path, source }.into());
         };
         if !name.starts_with('.') {
             pictures.insert(name, Source::File(path));

@@ -87,12 +87,15 @@ impl Comparison {
 
 fn pair(picture: &Compared, sources: &[Option<Source>; 2]) -> PicturePair {
     // Files that are not pictures are not shown.
-    let read = sources.each_ref().map(|source| Some((source.as_ref()?.bytes().ok()?, source.as_ref()?.pixels().ok()?)));
+    let read = sources.each_ref().map(|source| {
+        let bytes = source.as_ref()?.bytes().ok()?;
+        Some((Pixels::from_bytes(&bytes).ok()?, bytes))
+    });
     let difference = match &read {
-        [Some((_, expected)), Some((_, actual))] => difference(expected, actual),
+        [Some((expected, _)), Some((actual, _))] => difference(expected, actual),
         _ => None,
     };
-    let [expected, actual] = read.map(|read| read.map(|(bytes, _)| bytes.into_owned()));
+    let [expected, actual] = read.map(|read| read.map(|(_, bytes)| bytes.into_owned()));
     let (name, words, passes) = (picture.name.clone(), picture.to_string(), picture.verdict.passes());
     PicturePair { name, words, passes, files: [expected, difference, actual] }
 }
