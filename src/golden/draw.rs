@@ -18,7 +18,7 @@ use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
 use crate::sim::Scope;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Steps of each run between checks for interruption.
 const SLICE: u64 = 100;
@@ -74,18 +74,14 @@ pub(crate) fn draw(
     gpu: Option<&Gpu>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Drawn>, DrawError> {
-    let drawn = match subject {
-        Subject::Scene(scene) => draw_scene(scene, golden, pictures, gpu, go_on)?,
-        Subject::Figure(figure) => draw_figure(path, figure, golden, gpu, go_on)?,
-    };
-    Ok(drawn.map(|mut drawn| {
-        drawn.origin = path.to_owned();
-        drawn.record.subject = name_of(path);
-        drawn
-    }))
+    match subject {
+        Subject::Scene(scene) => draw_scene(path, scene, golden, pictures, gpu, go_on),
+        Subject::Figure(figure) => draw_figure(path, figure, golden, gpu, go_on),
+    }
 }
 
 fn draw_scene(
+    path: &Path,
     scene: &Scene,
     golden: &Golden,
     pictures: u64,
@@ -116,7 +112,7 @@ fn draw_scene(
             Next::Done => break,
         }
     }
-    Ok(Some(drawing.finish(said::of_scene(&scene, None, &[]))))
+    Ok(Some(drawing.finish(path, name_of(path), said::of_scene(&scene, None, &[]))))
 }
 
 fn draw_figure(
@@ -150,6 +146,6 @@ fn draw_figure(
         pictures = Some([(format!("{}.png", figure.name), Source::Memory(file))].into());
     }
     let keys = said::of_figure(path, &figure);
-    let record = Record { subject: String::new(), size: figure.size, frames: [0].into(), keys, states };
-    Ok(Some(Drawn { origin: PathBuf::new(), record, pictures, notes: Vec::new() }))
+    let record = Record { subject: name_of(path), size: figure.size, frames: [0].into(), keys, states };
+    Ok(Some(Drawn { origin: path.to_owned(), record, pictures, notes: Vec::new() }))
 }

@@ -13,7 +13,7 @@ use crate::runner::Frame;
 use crate::scene::Scene;
 use crate::sim::{Divergence, Snapshot, Status};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Spaces between the frames whose positions are recorded.
 const SPACES: u64 = 10;
@@ -97,13 +97,13 @@ impl<'s> Drawing<'s> {
         Ok(())
     }
 
-    /// The scene as drawn, which has these keys.
-    pub(super) fn finish(self, keys: Vec<Key>) -> Drawn {
+    /// The scene as drawn, from its file, with its name in records and its keys.
+    pub(super) fn finish(self, origin: &Path, subject: String, keys: Vec<Key>) -> Drawn {
         let is_drawn = self.is_drawn();
         let Self { scene, drawn, states, files, stopped, .. } = self;
-        let record = Record { subject: String::new(), size: scene.view.size, frames: drawn, keys, states };
+        let record = Record { subject, size: scene.view.size, frames: drawn, keys, states };
         let (pictures, notes) = (is_drawn.then_some(files), stopped.into_values().collect());
-        Drawn { origin: PathBuf::new(), record, pictures, notes }
+        Drawn { origin: origin.to_owned(), record, pictures, notes }
     }
 }
 

@@ -87,7 +87,7 @@ fn other_file(folder: &Path) -> Option<String> {
 /// A simulated scene or figure, drawn if there is a graphics adapter.
 #[derive(Clone, Debug)]
 pub(crate) struct Drawn {
-    /// Its file, which the caller sets.
+    /// Its file.
     pub(super) origin: PathBuf,
     pub(super) record: Record,
     /// `None` without a graphics adapter.

@@ -9,7 +9,7 @@ use crate::picture::Composer;
 use crate::render::RenderError;
 use crate::runner::{Frame, History};
 use crate::scene::{Scene, SceneKeys, Setting};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A scene that was simulated.
 pub struct Simulated<'a> {
@@ -64,9 +64,8 @@ impl Simulated<'_> {
             let compose = || composer.get_or_insert_with(|| Composer::new(&scene, self.course)).compose(&frame);
             drawing.add(&frame, compose).map_err(failed)?;
         }
-        let mut drawn = drawing.finish(said::of_scene(&scene, self.keys, self.settings));
-        drawn.record.subject.clone_from(&told.title);
-        drawn.origin = PathBuf::from(&told.title);
+        let keys = said::of_scene(&scene, self.keys, self.settings);
+        let drawn = drawing.finish(Path::new(&told.title), told.title.clone(), keys);
         let mut comparison = Comparison::of_golden(&golden, &drawn);
         comparison.title = told.title;
         comparison.command = Some(told.command);
