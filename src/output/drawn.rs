@@ -1,7 +1,7 @@
 //! Frames in folders, and compressed pixels for other files: for drawing only.
 
 use super::frame_name::frame_number;
-use super::png::{header, pixel_dims, texts_of};
+use super::png::{file, header, pixel_dims, texts_of};
 use super::{
     Compression, DiagnosticsWriter, FrameFolder, OutputError, Tags, encode_print, frame_file_name, write_whole,
 };
@@ -55,22 +55,12 @@ pub(crate) fn picture_size(path: &Path) -> Result<Option<[u32; 2]>, OutputError>
 
 /// Pixels, filtered and packed with the settings of `set`, as the contents of `IDAT` chunks.
 pub(crate) fn packed(
-    [width, height]: [u32; 2],
+    size: [u32; 2],
     kind: png::ColorType,
     pixels: &[u8],
     set: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
 ) -> Vec<u8> {
-    let mut file = Vec::with_capacity(pixels.len() / 8);
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(kind);
-    encoder.set_depth(png::BitDepth::Eight);
-    set(&mut encoder);
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(pixels)?;
-        writer.finish()
-    });
-    written.expect("pixels of the right length into memory");
-    image_chunks(&file).collect::<Vec<_>>().concat()
+    image_chunks(&file(size, kind, pixels, set)).collect::<Vec<_>>().concat()
 }
 
 /// The contents of the `IDAT` chunks of a PNG file.

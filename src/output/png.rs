@@ -83,7 +83,7 @@ impl Tags {
         Self::new(shows, vec![scene.digest.clone()], states.collect(), adapter)
     }
 
-    /// The tags of a figure that shows `moments`, drawn by `adapter`; its states are [`Moments::states`].
+    /// The tags of a figure that shows `moments`, drawn by `adapter`.
     pub fn of_figure(figure: &Figure, moments: &Moments, adapter: &str) -> Self {
         let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
         let shown = moments.runs_and_states(figure).into_iter();
@@ -181,21 +181,37 @@ pub fn encode_print(
     let all = u64::from(width) * u64::from(height);
     assert!([3 * all, 4 * all].contains(&(pixels.len() as u64)), "{} bytes for {all} pixels", pixels.len());
     let colour = if pixels.len() as u64 == 3 * all { png::ColorType::Rgb } else { png::ColorType::Rgba };
+    file(size, colour, pixels, |encoder| {
+        compression.apply(encoder);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        encoder.set_pixel_dims(dpi.map(pixel_dims));
+        for (name, text) in texts {
+            let name = format!("localshape:{name}");
+            // A tEXt chunk can have only Latin-1 without control characters.
+            let plain =
+                text.chars().all(|c| c == '\n' || (' '..='~').contains(&c) || ('\u{a1}'..='\u{ff}').contains(&c));
+            let added = if plain {
+                encoder.add_text_chunk(name, text.clone())
+            } else {
+                encoder.add_itxt_chunk(name, text.clone())
+            };
+            added.expect("the header is not written yet");
+        }
+    })
+}
+
+/// A PNG file of pixels of 8 bits a channel, with the settings of `set`.
+pub(super) fn file(
+    [width, height]: [u32; 2],
+    kind: png::ColorType,
+    pixels: &[u8],
+    set: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
+) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(pixels.len() / 8);
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(colour);
+    encoder.set_color(kind);
     encoder.set_depth(png::BitDepth::Eight);
-    compression.apply(&mut encoder);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_pixel_dims(dpi.map(pixel_dims));
-    for (name, text) in texts {
-        let name = format!("localshape:{name}");
-        // A tEXt chunk can have only Latin-1 without control characters.
-        let plain = text.chars().all(|c| c == '\n' || (' '..='~').contains(&c) || ('\u{a1}'..='\u{ff}').contains(&c));
-        let added =
-            if plain { encoder.add_text_chunk(name, text.clone()) } else { encoder.add_itxt_chunk(name, text.clone()) };
-        added.expect("the header is not written yet");
-    }
+    set(&mut encoder);
     let written = encoder.write_header().and_then(|mut writer| {
         writer.write_image_data(pixels)?;
         writer.finish()

@@ -2,6 +2,7 @@
 
 use super::Page;
 use super::font::Subset;
+use crate::output;
 use crate::picture::{Colour, Image, Item, Paint, Path, Pen, Picture, Step, TextRun};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -211,7 +212,7 @@ impl Writer<'_> {
 
     /// Writes pixels. PDF reads the packed rows of PNG.
     fn pixels(&mut self, id: Ref, [width, height]: [u32; 2], kind: png::ColorType, pixels: &[u8], mask: Option<Ref>) {
-        let rows = rows_of_png([width, height], kind, pixels);
+        let rows = output::packed([width, height], kind, pixels, |encoder| output::Compression::Small.apply(encoder));
         let mut image = self.pdf.image_xobject(id, &rows);
         image.filter(Filter::FlateDecode);
         image.width(width as i32).height(height as i32).bits_per_component(8);
@@ -338,9 +339,4 @@ fn fine(length: f32) -> f32 {
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("into memory")
-}
-
-/// Rows of pixels, filtered and packed as in PNG.
-fn rows_of_png(size: [u32; 2], kind: png::ColorType, pixels: &[u8]) -> Vec<u8> {
-    crate::output::packed(size, kind, pixels, |encoder| crate::output::Compression::Small.apply(encoder))
 }
