@@ -54,7 +54,9 @@ impl Progress {
 
 /// The states of frames, stored until they are drawn.
 struct Waiting {
-    states: Store,
+    file: Growing,
+    /// The end of each state in the file.
+    ends: Vec<u64>,
     /// The number of frames reached by the simulation.
     reached: usize,
     is_known: bool,
@@ -77,8 +79,7 @@ impl<'a> Frames<'a> {
     /// Frames of a runner at its start, in rising order. With a file for `waiting` states the runner must record time
     /// series, and everything is simulated before the first frame is returned.
     pub(crate) fn new(runner: Runner<'a>, frames: &[u64], waiting: Option<Growing>) -> Self {
-        let waiting =
-            waiting.map(|file| Waiting { states: Store { file, ends: Vec::new() }, reached: 0, is_known: false });
+        let waiting = waiting.map(Waiting::new);
         Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, known: None, waiting }
     }
 
@@ -90,12 +91,12 @@ impl<'a> Frames<'a> {
         let Self { runner, frames, taken, waiting, .. } = self;
         let waiting = match waiting {
             None if *taken < frames.len() => None,
-            Some(Waiting { states, is_known: false, .. }) => Some((states.file.sync()?, states.ends.clone())),
+            Some(Waiting { file, ends, is_known: false, .. }) => Some((file.sync()?, ends.clone())),
             _ => return Ok(None),
         };
         let states = runner.runs.iter_mut().map(|running| {
             running.world.settle();
-            running.look(runner.scene);
+            running.look();
             running.world.state().to_bytes()
         });
         let states = states.collect();
@@ -123,7 +124,7 @@ impl<'a> Frames<'a> {
             (Some(to_fill), Some((grown, ends)))
                 if returned == 0 && ends.is_sorted() && ends.last().copied().unwrap_or(0) == grown.length =>
             {
-                (to_fill.reached, to_fill.states.ends) = (ends.len() / runs.max(1), ends);
+                (to_fill.reached, to_fill.ends) = (ends.len() / runs.max(1), ends);
                 Some(to_fill.reached)
             }
             _ => None,
@@ -188,7 +189,7 @@ impl<'a> Frames<'a> {
                 return Ok(Next::Working);
             }
             if frame.is_some() {
-                runner.runs.iter().try_for_each(|running| waiting.states.put(&running.world.state().to_bytes()))?;
+                runner.runs.iter().try_for_each(|running| waiting.put(&running.world.state().to_bytes()))?;
                 waiting.reached += 1;
                 return Ok(Next::Working);
             }
@@ -202,15 +203,15 @@ impl<'a> Frames<'a> {
             return Ok(Next::Working);
         }
         runner.check()?;
-        let (first, scene) = (*taken * runner.runs.len(), runner.scene);
+        let first = *taken * runner.runs.len();
         if let (Some(waiting), false) = (waiting, *is_searching) {
             for (place, running) in runner.runs.iter_mut().enumerate() {
-                let state = State::from_bytes(&waiting.states.get(first + place)?);
+                let state = State::from_bytes(&waiting.get(first + place)?);
                 let state = state.filter(|state| running.world.takes(state));
                 running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
             }
         }
-        let found = runner.runs.par_iter_mut().map(|running| running.find_last_fit(scene, most_steps));
+        let found = runner.runs.par_iter_mut().map(|running| running.find_last_fit(most_steps));
         *is_searching = !found.reduce(|| true, |one, other| one && other);
         if *is_searching {
             return Ok(Next::Working);
@@ -236,7 +237,7 @@ impl<'a> Frames<'a> {
             Some(waiting) if !waiting.is_known => self.runner.scene.last_frame(),
             Some(_) => return None,
         };
-        let times = self.runner.runs.iter().map(|running| running.world.steps() as f64 * running.step);
+        let times = self.runner.runs.iter().map(|running| running.world.steps() as f64 * running.of.step);
         Some([times.fold(f64::INFINITY, f64::min), self.runner.scene.frame_time(end)])
     }
 
@@ -312,14 +313,11 @@ impl<'a> Frames<'a> {
     }
 }
 
-/// Blocks of bytes in a file.
-struct Store {
-    file: Growing,
-    /// The end of each block.
-    ends: Vec<u64>,
-}
+impl Waiting {
+    fn new(file: Growing) -> Self {
+        Self { file, ends: Vec::new(), reached: 0, is_known: false }
+    }
 
-impl Store {
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.append(bytes)?;
         self.ends.push(self.ends.last().unwrap_or(&0) + bytes.len() as u64);
@@ -340,7 +338,7 @@ mod tests {
 
     #[test]
     fn pieces_come_back() {
-        let mut store = Store { file: Growing::new(tempfile::tempfile().unwrap()), ends: Vec::new() };
+        let mut store = Waiting::new(Growing::new(tempfile::tempfile().unwrap()));
         let piece = |at: usize| vec![at as u8; [300, 30, 9000, 0, 1][at]];
         (0..5).for_each(|at| store.put(&piece(at)).unwrap());
         assert!([4, 0, 2, 3, 1].into_iter().all(|at| store.get(at).unwrap() == piece(at)));

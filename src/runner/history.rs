@@ -38,7 +38,7 @@ impl History {
 }
 
 /// The time series of one run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TimeSeries {
     /// Index of the run in the scene.
     pub run: usize,
@@ -66,13 +66,6 @@ pub struct TimeSeries {
 }
 
 impl TimeSeries {
-    /// An empty time series of a run.
-    pub(crate) fn new(run: usize) -> Self {
-        let (times, diagnostics, of_bodies, readings, paths, boxes, reach) = Default::default();
-        let (hidden, divergence) = Default::default();
-        Self { run, times, diagnostics, of_bodies, readings, paths, boxes, hidden, reach, divergence }
-    }
-
     /// Whether it has the same run and the same quantities as an empty one.
     pub(crate) fn fits(&self, empty: &Self) -> bool {
         let moments = self.times.len();

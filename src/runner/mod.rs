@@ -11,10 +11,10 @@ mod meetings;
 pub(crate) mod moments;
 mod stored;
 
-use crate::look::{Plot, Traced};
+use crate::look::Plot;
 use crate::scene::measure::Meter;
-use crate::scene::{Recorded, Scene};
-use crate::sim::{Body, Crew, Diagnostic, Diagnostics, Moment, State, Status, World};
+use crate::scene::{Recorded, Run, Scene};
+use crate::sim::{Crew, Diagnostic, Diagnostics, Moment, State, Status, World};
 pub use frame::{Frame, RunFrame};
 pub(crate) use frames::{Frames, Next, Progress};
 pub(crate) use history::TableRow;
@@ -39,19 +39,17 @@ pub struct Runner<'a> {
 
 /// One run with its world and time series.
 struct Running<'a> {
+    scene: &'a Scene,
+    /// Index of the run in the scene, and the run.
     run: usize,
+    of: &'a Run,
     world: World,
-    /// Time step (s).
-    step: f64,
     /// Moments of the time series, rising.
     notes: Vec<Moment>,
     /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
     /// What other charts show.
     meters: Vec<Meter<'a>>,
-    /// The points with recorded paths.
-    traced: Vec<Traced>,
-    body: Arc<Body>,
     series: TimeSeries,
     /// Its rows between frames, until they are taken; `None` if none are wanted.
     rows: Option<VecDeque<TableRow>>,
@@ -92,20 +90,19 @@ impl<'a> Runner<'a> {
     /// A runner for some of `all` runs that share the threads.
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
         let running = |&run: &usize| {
-            let body = scene.runs[run].body();
-            let threads = scene.runs[run].threads(all);
+            let of = &scene.runs[run];
+            let threads = of.threads(all);
             let mut world = scene.world(run);
             world.set_crew(Crew::new(threads));
             let running = Running {
+                scene,
                 run,
+                of,
                 world,
-                step: scene.runs[run].step,
                 notes: Vec::new(),
                 wanted: Vec::new(),
                 meters: Vec::new(),
-                traced: Vec::new(),
-                body: Arc::clone(body),
-                series: TimeSeries::new(run),
+                series: TimeSeries { run, ..TimeSeries::default() },
                 rows: None,
                 threads,
                 is_drawn: true,
@@ -115,7 +112,7 @@ impl<'a> Runner<'a> {
                 watch: None,
                 meeting: None,
             };
-            match &scene.runs[run].recording {
+            match &of.recording {
                 Some(recording) => running.showing(recording),
                 None => running,
             }
@@ -131,7 +128,7 @@ impl<'a> Runner<'a> {
             if (recording.nodes, recording.memory) != (position.len(), Some(memory)) {
                 return None;
             }
-            let world = running.world.playing(Box::new(recording.player(running.step)));
+            let world = running.world.playing(Box::new(recording.player(running.of.step)));
             Some(Running { world, ..running }.showing(recording))
         };
         self.runs = self.runs.into_iter().zip(recordings).map(play).collect::<Option<_>>()?;
@@ -195,13 +192,12 @@ impl<'a> Runner<'a> {
         let wanted: Vec<_> = plots.iter().filter_map(Plot::diagnostic).collect();
         for running in &mut self.runs {
             running.wanted = wanted.clone();
-            running.meters = of.clone().map(|of| Meter::new(scene, &scene.runs[running.run], of)).collect();
+            running.meters = of.clone().map(|of| Meter::new(scene, running.of, of)).collect();
             running.series.readings = vec![Vec::new(); running.meters.len()];
-            running.traced = self.scene.view.paths.clone();
-            running.series.paths = vec![Vec::new(); running.traced.len()];
-            let bodies = self.scene.runs[running.run].of.len();
+            running.series.paths = vec![Vec::new(); scene.view.paths.len()];
+            let bodies = running.of.of.len();
             running.series.of_bodies = vec![Vec::new(); if bodies > 1 && !wanted.is_empty() { bodies } else { 0 }];
-            running.notes = history::moments(self.scene, &running.world, closer, shown);
+            running.notes = history::moments(scene, &running.world, closer, shown);
         }
         self
     }
@@ -219,8 +215,7 @@ impl<'a> Runner<'a> {
     /// # Panics
     /// The moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
-        let scene = self.scene;
-        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(scene, moment, most_steps));
+        let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(moment, most_steps));
         arrived.reduce(|| true, |one, other| one && other)
     }
 
@@ -236,7 +231,7 @@ impl<'a> Runner<'a> {
 
     /// The states of the runs at the last moment that all have reached.
     pub fn snapshots(&self) -> Vec<RunFrame> {
-        let mut runs: Vec<_> = self.runs.par_iter().map(|running| running.frame(self.scene)).collect();
+        let mut runs: Vec<_> = self.runs.par_iter().map(Running::frame).collect();
         let to = self.scene.view.colour.and_then(|scale| scale.to).filter(|_| self.runs.iter().any(|run| run.is_drawn));
         if let Some(other) = to.and_then(|to| runs.iter().find(|run| run.run == to).cloned()) {
             runs.iter_mut().for_each(|run| run.measure(&other));
@@ -282,8 +277,8 @@ impl<'a> Runner<'a> {
     pub fn take_history(&mut self) -> History {
         let take = |running: &mut Running| {
             running.notes.clear();
-            let run = running.series.run;
-            std::mem::replace(&mut running.series, TimeSeries::new(run))
+            let empty = TimeSeries { run: running.run, ..TimeSeries::default() };
+            std::mem::replace(&mut running.series, empty)
         };
         let series = self.runs.iter_mut().map(take).collect();
         History { end: self.scene.frame_time(self.scene.last_frame()), series }
@@ -292,10 +287,10 @@ impl<'a> Runner<'a> {
 
 impl Running<'_> {
     /// The present state, and the drawn one if the run has diverged.
-    fn frame(&self, scene: &Scene) -> RunFrame {
-        let Self { run, world, threads, is_drawn, last_fit, .. } = self;
+    fn frame(&self) -> RunFrame {
+        let Self { scene, run, world, threads, is_drawn, last_fit, .. } = self;
         let frame = RunFrame::new(*run, world.snapshot());
-        if !is_drawn || self.shows_itself(scene) {
+        if !is_drawn || self.shows_itself() {
             return frame;
         }
         let search = || Search::new(scene, *run, *threads).advance(scene, u64::MAX).flatten();
@@ -305,8 +300,8 @@ impl Running<'_> {
     }
 
     /// Whether pictures show the present state.
-    fn shows_itself(&self, scene: &Scene) -> bool {
-        self.world.status() == Status::Ok && fits(&scene.runs[self.run], &self.world.state().position)
+    fn shows_itself(&self) -> bool {
+        self.world.status() == Status::Ok && fits(self.of, &self.world.state().position)
     }
 
     /// Shows a recording of its world, with the recorded end; nothing is searched for.
@@ -328,72 +323,72 @@ impl Running<'_> {
     }
 
     /// Searches for the drawn state through about this many steps. Returns whether it is known or not needed.
-    fn find_last_fit(&mut self, scene: &Scene, most_steps: u64) -> bool {
-        if !self.is_drawn || self.last_fit.get().is_some() || self.shows_itself(scene) {
+    fn find_last_fit(&mut self, most_steps: u64) -> bool {
+        if !self.is_drawn || self.last_fit.get().is_some() || self.shows_itself() {
             return true;
         }
-        let search = self.search.get_or_insert_with(|| Search::new(scene, self.run, self.threads));
-        let Some(found) = search.advance(scene, most_steps) else { return false };
+        let search = self.search.get_or_insert_with(|| Search::new(self.scene, self.run, self.threads));
+        let Some(found) = search.advance(self.scene, most_steps) else { return false };
         self.search = None;
         self.last_fit = found.into();
         true
     }
 
-    fn advance_towards(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
+    fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
         // Recorded states take no steps.
         let most_steps = if self.recording.is_some() { u64::MAX } else { most_steps };
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
-        while let Some(next) = self.next_note(scene).filter(|next| self.world.steps_at(*next) <= target) {
+        while let Some(next) = self.next_note().filter(|next| self.world.steps_at(*next) <= target) {
             let before = self.world.steps();
-            let is_there = self.walk(scene, next, left);
+            let is_there = self.walk(next, left);
             if let Status::Diverged(divergence) = self.world.status() {
                 // The last finite state is that before the rejected step.
                 let (last, noted) = (divergence.step - 1, self.series.times.len());
                 if !self.notes.is_empty() && (noted == 0 || last > self.world.steps_at(self.notes[noted - 1])) {
                     let diagnostics = self.world.diagnostics_by_body(&self.wanted);
-                    self.note(scene, last, diagnostics);
+                    self.note(last, diagnostics);
                 }
                 self.series.divergence = Some(divergence);
             } else if is_there {
                 left -= self.world.steps() - before;
-                self.note_all(scene, before);
+                self.note_all(before);
             } else {
                 return false;
             }
         }
-        self.walk(scene, moment, left)
+        self.walk(moment, left)
     }
 
     /// The moment of the next note or row; `None` after a divergence.
-    fn next_note(&self, scene: &Scene) -> Option<Moment> {
+    fn next_note(&self) -> Option<Moment> {
         let note = self.notes.get(self.series.times.len()).copied();
-        let row = self.rows.as_ref().and_then(|_| scene.next_row(self.run, self.world.steps()));
+        let row = self.rows.as_ref().and_then(|_| self.scene.next_row(self.run, self.world.steps()));
         let next = note.into_iter().chain(row).min_by_key(|&next| self.world.steps_at(next));
         next.filter(|_| self.series.divergence.is_none())
     }
 
     /// Records the present state for pictures, as a row, or both. The steps `before` were recorded.
-    fn note_all(&mut self, scene: &Scene, before: u64) {
-        let Self { run, world, notes, rows, wanted, series, .. } = self;
-        let (steps, run) = (world.steps(), *run);
+    fn note_all(&mut self, before: u64) {
+        let Self { scene, run, of, world, notes, rows, wanted, series, .. } = self;
+        let steps = world.steps();
         let is_now = |moment: Option<Moment>| moment.is_some_and(|moment| world.steps_at(moment) == steps);
-        let row = rows.as_mut().filter(|_| steps > before && is_now(scene.next_row(run, before)));
+        let row = rows.as_mut().filter(|_| steps > before && is_now(scene.next_row(*run, before)));
         let is_noted = is_now(notes.get(series.times.len()).copied());
         let (all, of_bodies) = world.diagnostics_by_body(if row.is_some() { Diagnostic::ALL } else { wanted });
         if let Some(rows) = row {
-            let time = steps as f64 * self.step;
+            let time = steps as f64 * of.step;
             let reactions = world.reactions().unwrap_or_default();
-            let displaced = scene.all_displaced(&scene.runs[run], &world.state().position);
+            let displaced = scene.all_displaced(of, &world.state().position);
             rows.push_back(TableRow { time, all, of_bodies: of_bodies.clone(), reactions, displaced });
         }
         if is_noted {
-            self.note(scene, steps, (all, of_bodies));
+            self.note(steps, (all, of_bodies));
         }
     }
 
     /// Advances as [`World::advance_towards`] does, and watches the bodies.
-    fn walk(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
-        let Self { run, world, watch: Some(watch), .. } = self else {
+    fn walk(&mut self, moment: Moment, most_steps: u64) -> bool {
+        let Self { scene, run, world, watch: Some(watch), .. } = self else {
             return self.world.advance_towards(moment, most_steps);
         };
         let (is_there, found) = watch.advance(scene, *run, world, (moment, most_steps));
@@ -402,8 +397,8 @@ impl Running<'_> {
     }
 
     /// Looks at the bodies now, so that a copy of the present state needs no earlier one.
-    fn look(&mut self, scene: &Scene) {
-        let Self { run, world, watch, .. } = self;
+    fn look(&mut self) {
+        let Self { scene, run, world, watch, .. } = self;
         let found = watch.as_mut().and_then(|watch| watch.look(scene, *run, world));
         self.meet(found);
     }
@@ -416,17 +411,18 @@ impl Running<'_> {
     }
 
     /// Records the present state after a step for pictures, with its diagnostics.
-    fn note(&mut self, scene: &Scene, step: u64, diagnostics: (Diagnostics, Vec<Diagnostics>)) {
+    fn note(&mut self, step: u64, diagnostics: (Diagnostics, Vec<Diagnostics>)) {
         let position = &self.world.state().position;
-        let time = step as f64 * self.step;
-        self.series.note(scene, time, diagnostics, position);
+        let time = step as f64 * self.of.step;
+        self.series.note(self.scene, time, diagnostics, position);
         if !self.meters.is_empty() {
             let forces = self.world.reactions().unwrap_or_default();
             let readings = self.meters.iter().map(|meter| meter.read(time, position, &forces));
             self.series.readings.iter_mut().zip(readings).for_each(|(of, reading)| of.push(reading));
         }
-        for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {
-            path.push(traced.of(&self.body, position));
+        // Without time series there are no paths.
+        for (traced, path) in self.scene.view.paths.iter().zip(&mut self.series.paths) {
+            path.push(traced.of(self.of.body(), position));
         }
     }
 }

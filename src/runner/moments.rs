@@ -43,13 +43,8 @@ impl Moments {
         taking.finish()
     }
 
-    /// The states of a figure, each with a unique name: cell by cell for a sheet; the initial states of all runs of its
-    /// scenes for a diagram of forces.
-    pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, &'a Snapshot)> {
-        self.runs_and_states(figure).into_iter().map(|(name, _, state)| (name, state)).collect()
-    }
-
-    /// The states likewise, with the scene and the run of each.
+    /// The states of a figure, each with a unique name, its scene and its run: cell by cell for a sheet; the initial states
+    /// of all runs of its scenes for a diagram of forces.
     pub(crate) fn runs_and_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, &'a Snapshot)> {
         let mut states = self.named_states(figure);
         // Two scenes may have the same title.

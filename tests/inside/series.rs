@@ -59,7 +59,7 @@ fn each_of_several_bodies_has_a_curve_over_all_times() {
     let of_run = TimeSeries {
         times: vec![0.0, 0.1, 0.2],
         of_bodies: vec![[1.0, 2.0, 3.0].map(moved).to_vec(), [4.0, 5.0, 6.0].map(moved).to_vec()],
-        ..TimeSeries::new(0)
+        ..TimeSeries::default()
     };
     let palette = scene.view.look.palette();
     let curves: Vec<_> = Series::of_bodies(Diagnostic::Kinetic, &of_run, (&scene, "run"), &palette).collect();
