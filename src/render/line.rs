@@ -12,7 +12,7 @@ use crate::picture::{
     Stroke, around, clipped, newell, sides,
 };
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// Widths of hidden edges and of contours (px in the reference picture), from the widest contour to the narrowest.
 const HIDDEN_WIDTH: f32 = 0.9;
@@ -367,8 +367,8 @@ fn add(path: &Path, width: f32, colour: Colour, alpha: f32, items: &mut Vec<Item
     }
 }
 
-/// Lines of one pen.
-#[derive(Clone, Copy)]
+/// Lines of one pen, in the order of drawing.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum Style {
     Hidden,
     HiddenBar,
@@ -386,23 +386,6 @@ enum Style {
 }
 
 impl Style {
-    /// All, in the order of drawing.
-    const ALL: [Self; 13] = [
-        Self::Hidden,
-        Self::HiddenBar,
-        Self::Edge,
-        Self::Bar,
-        Self::ObstacleEdge,
-        Self::AlarmEdge,
-        Self::AlarmStep,
-        Self::AlarmFold,
-        Self::Step,
-        Self::FineStep,
-        Self::ObstacleStep,
-        Self::Outline,
-        Self::ObstacleOutline,
-    ];
-
     /// The styles of a kind of lines.
     fn of(kind: LineKind) -> [Self; 3] {
         match kind {
@@ -444,7 +427,7 @@ impl Style {
 pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
     let panel = depths.panel;
     let (mut items, palette) = (Vec::new(), palette(picture, panel));
-    let mut paths: Vec<[Path; LEVELS]> = Style::ALL.map(|_| Default::default()).into();
+    let mut paths: BTreeMap<Style, [Path; LEVELS]> = BTreeMap::new();
     let mut drawn = HashSet::new();
     let lines = if panel.region[2..].contains(&0) { &[] } else { &panel.lines[..] };
     let continues = |one: &Line, next: &Line| [one, next].iter().all(|line| is_fine(line)) && one.to == next.from;
@@ -463,16 +446,16 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
             for (at, style) in Style::of(chain[0].kind).into_iter().enumerate() {
                 let levels: Vec<_> = levels.iter().map(|levels| levels[at]).collect();
                 // Coverage of a line drawn twice would add up: both sets of elements have contours along common edges.
-                if levels.iter().all(|&level| level == 0) || !drawn.insert((style as usize, segment.key())) {
+                if levels.iter().all(|&level| level == 0) || !drawn.insert((style, segment.key())) {
                     continue;
                 }
                 for (run, level) in runs(&levels).into_iter().filter(|&(_, level)| level > 0) {
                     let part = segment.part(run, levels.len()).0;
                     // At the end of a fold the edges of triangles turn back beside each other. Their opacities would add up to a knot, so
                     // each level is drawn with all that are stronger.
-                    let least = if matches!(style, Style::FineStep) { 1 } else { level };
+                    let least = if style == Style::FineStep { 1 } else { level };
                     for level in least..=level {
-                        let path = &mut paths[style as usize][level - 1].0;
+                        let path = &mut paths.entry(style).or_default()[level - 1].0;
                         let continues = is_fine(&chain[0]) && are_joined(path, &part);
                         path.extend(&part[usize::from(continues)..]);
                     }
@@ -480,7 +463,7 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
             }
         }
     }
-    for (style, paths) in Style::ALL.into_iter().zip(paths) {
+    for (style, paths) in paths {
         let (width, colour, alpha) = style.pen(panel, &palette);
         let of_level = |level: usize| in_bytes(alpha * level as f32 / LEVELS as f32, colour);
         for (level, path) in (1..).zip(paths).filter(|(_, path)| !path.is_empty()) {

@@ -16,7 +16,7 @@ mod target;
 
 use crate::gpu::{Gpu, GpuError};
 use crate::picture::{Panel, Picture};
-use crate::vector::{self, Painter};
+use crate::vector::Painter;
 use image::RgbImage;
 use lit::Lit;
 
@@ -134,7 +134,7 @@ impl Renderer {
             }
             Some(pending) => self.lit.as_ref().expect("it is drawing").collect(pending, picture, &mut self.pixels)?,
         };
-        vector::paint(&mut self.painter, picture, &lines, &mut self.pixels);
+        self.painter.paint(picture, &lines, &mut self.pixels);
         Ok(without_opacity(&self.pixels))
     }
 }

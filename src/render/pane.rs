@@ -9,12 +9,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
 
-const SHADER: &str = include_str!("../../shaders/pane.wgsl");
-
 /// The parts of the shader.
-pub(super) fn parts() -> [&'static str; 3] {
-    [super::PANEL_SHADER, super::KEY_SHADER, SHADER]
-}
+pub(super) const PARTS: [&str; 3] = [super::PANEL_SHADER, super::KEY_SHADER, include_str!("../../shaders/pane.wgsl")];
 
 /// A corner of a pane as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -50,7 +46,7 @@ impl Panes {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels, layouts: &Layouts) -> Self {
-        let module = shader(gpu, "pane", &parts());
+        let module = shader(gpu, "pane", &PARTS);
         let recipe = Recipe {
             groups: &[&panels.layout, &layouts.drawn],
             vertices: &[Some(for_vertices::<Corner>(&ATTRIBUTES))],

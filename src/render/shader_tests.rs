@@ -27,7 +27,7 @@ fn shaders_are_valid() {
             parse(&[&Variant { occluders, tinted, edged, shadowed }.parts()]);
         }
     }
-    parse(&pane::parts());
+    parse(&pane::PARTS);
 }
 
 /// Names and places of the fields of a struct, and its size.

@@ -151,12 +151,6 @@ fn halo(picture: &Picture, run: &TextRun) -> Option<Item> {
     run.has_halo.then(|| Item::stroke(outlines(picture, run), pen, picture.palette.background))
 }
 
-/// Paints a picture over the pixels of its lit bodies, whose lines are given, or over its background.
-pub(crate) fn paint(painter: &mut Painter, picture: &Picture, lines: &[Item], pixels: &mut [u8]) {
-    painter.take(lines.iter().chain(&picture.under).chain(&picture.above), picture);
-    painter.paint(pixels);
-}
-
 /// The part of a lit panel that is not empty.
 fn image(page: &Page<'_>, panel: &Panel, pixels: &[u8]) -> Option<Image> {
     let picture = page.picture;

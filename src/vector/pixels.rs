@@ -24,7 +24,6 @@ type GlyphKey = (u64, u16, u32);
 /// Paints pages of one size.
 #[derive(Debug)]
 pub(crate) struct Painter {
-    size: [u16; 2],
     context: RenderContext,
     resources: Resources,
     /// Straight outlines of the glyphs that were used (px from the origin).
@@ -45,20 +44,16 @@ impl Painter {
     pub(crate) fn new(size: [u16; 2]) -> Self {
         let settings = RenderSettings { level: level(), num_threads: 0 };
         let context = RenderContext::new_with(size[0], size[1], settings);
-        Self { size, context, resources: Resources::new(), glyphs: HashMap::new() }
+        Self { context, resources: Resources::new(), glyphs: HashMap::new() }
     }
 
-    /// Takes the items of a page, in place of those of the last one.
-    pub(super) fn take<'a>(&mut self, items: impl Iterator<Item = &'a Item>, picture: &Picture) {
+    /// Paints a picture over the pixels of its lit bodies, whose lines are given, or over its background: red, green, blue
+    /// and full opacity of each, which the painter relies on, in rows from the top left.
+    pub(crate) fn paint(&mut self, picture: &Picture, lines: &[Item], pixels: &mut [u8]) {
         self.context.reset();
-        items.for_each(|item| self.item(item, picture));
-    }
-
-    /// Paints the items over pixels: red, green, blue and full opacity of each, which the painter relies on, in rows from the
-    /// top left.
-    pub(crate) fn paint(&mut self, pixels: &mut [u8]) {
+        lines.iter().chain(&picture.under).chain(&picture.above).for_each(|item| self.item(item, picture));
         let settings = RasterizerSettings { target_init: TargetInit::SrcOver, ..RasterizerSettings::default() };
-        let [width, height] = self.size;
+        let [width, height] = [self.context.width(), self.context.height()];
         let mut target = PixmapMut::new(width, height, pixels).expect("four bytes a pixel");
         target.set_may_have_transparency(false);
         self.context.render_with(target, &mut self.resources, settings);
@@ -176,12 +171,8 @@ fn element(step: &Step) -> PathEl {
 }
 
 /// A path of straight lines.
-fn straight(elements: impl Iterator<Item = PathEl>) -> BezPath {
-    let mut path = BezPath::new();
-    flatten(elements, FLATNESS, |element| path.push(element));
-    path
-}
-
 fn outline(path: &Path) -> BezPath {
-    straight(path.0.iter().map(element))
+    let mut straight = BezPath::new();
+    flatten(path.0.iter().map(element), FLATNESS, |element| straight.push(element));
+    straight
 }
