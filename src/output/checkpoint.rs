@@ -54,7 +54,7 @@ impl Manifest {
 }
 
 /// The progress of a command.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     /// The command line.
     pub(crate) command: Vec<String>,
@@ -77,17 +77,7 @@ pub(crate) struct Checkpoint {
 impl Checkpoint {
     /// The checkpoint of a command with a manifest.
     pub(crate) fn new(command: Vec<String>, manifest: &Manifest, progress: Progress) -> Self {
-        let (causes, extremes) = Default::default();
-        Self {
-            command,
-            manifest: digest(manifest),
-            progress,
-            causes,
-            extremes,
-            rows: None,
-            course: None,
-            exported: Vec::new(),
-        }
+        Self { command, manifest: digest(manifest), progress, ..Self::default() }
     }
 
     /// Writes the checkpoint into a folder, replacing an earlier one. The files that it refers to must be on the disk.

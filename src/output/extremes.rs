@@ -36,10 +36,7 @@ impl Extremes {
         if own < *least {
             *least = own;
         }
-        let greatest = self.greatest.entry(name.to_owned()).or_insert(own);
-        if value > greatest.value || value == greatest.value && time < greatest.time {
-            *greatest = own;
-        }
+        self.note_peak(name.to_owned(), time, value);
     }
 
     /// Takes note of the magnitude of what is 0 for most of the time: of its greatest value alone.

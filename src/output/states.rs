@@ -107,8 +107,7 @@ impl StatesWriter {
         let path = folder.join(STATES_FILE);
         let mut arrays = vec![StatesArray { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
-        let step = |run: usize| scene.runs[run].step;
-        let steps: Vec<f64> = runs.iter().map(|&run| step(run)).collect();
+        let steps: Vec<f64> = runs.iter().map(|&run| scene.runs[run].step).collect();
         let own_time: Vec<bool> = steps.iter().map(|&step| step != steps[0]).collect();
         let mut stored = Vec::new();
         for ((&run, &own_time), state) in runs.iter().zip(&own_time).zip(states) {
@@ -129,8 +128,7 @@ impl StatesWriter {
                 arrays.push(StatesArray { name, shape, offset: record, length });
                 record += length as u64;
             }
-            let name = scene.runs[run].name.clone();
-            stored.push(StoredRun::new(&name));
+            stored.push(StoredRun::new(&scene.runs[run].name));
         }
         let mesh = |&run: &usize| {
             let is_first = Arc::ptr_eq(&scene.runs[run].bodies, &scene.runs[runs[0]].bodies);

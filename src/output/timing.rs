@@ -16,12 +16,8 @@ pub struct Spent {
 impl AddAssign for Spent {
     fn add_assign(&mut self, other: Self) {
         self.wall += other.wall;
-        self.cpu = match (self.cpu, other.cpu) {
-            (Some(one), Some(other)) => Some(one + other),
-            // `None` is also the value before the first addition.
-            (None, other) => other,
-            (one, None) => one,
-        };
+        // `None` is also the value before the first addition.
+        self.cpu = [self.cpu, other.cpu].into_iter().flatten().reduce(|one, other| one + other);
     }
 }
 
