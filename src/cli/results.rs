@@ -87,7 +87,7 @@ impl Results<'_> {
             if !ahead {
                 checkpoint.rows = diagnostics.as_mut().map(DiagnosticsWriter::sync).transpose().map_err(failed)?;
                 checkpoint.course = states.as_mut().map(StatesWriter::sync).transpose().map_err(failed)?;
-                checkpoint.exported = export.written();
+                checkpoint.exported = export.written.clone();
             }
             checkpoint.write(path, whose)
         };

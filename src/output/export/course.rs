@@ -17,13 +17,8 @@ pub(super) struct Course<'c> {
 }
 
 impl Course<'_> {
-    /// The positions of some nodes in a frame (m).
-    pub(super) fn positions(&mut self, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
-        self.states.read(self.place, "position", self.frames[frame], nodes)
-    }
-
-    /// The velocities of some nodes in a frame (m/s).
-    pub(super) fn velocities(&mut self, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
-        self.states.read(self.place, "velocity", self.frames[frame], nodes)
+    /// The positions (m) or velocities (m/s) of some nodes in a frame: `position` or `velocity`.
+    pub(super) fn read(&mut self, quantity: &str, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
+        self.states.read(self.place, quantity, self.frames[frame], nodes)
     }
 }

@@ -222,7 +222,7 @@ fn motions(to: &mut impl Write, body: &OfBody<Surface>, course: &mut Course<'_>)
         let some = first..nodes.end.min(first + at_once);
         let mut by_node = vec![[0.0_f32; 3]; some.len() * frames];
         for frame in 0..frames {
-            for (node, at) in course.positions(frame, &some)?.into_iter().enumerate() {
+            for (node, at) in course.read("position", frame, &some)?.into_iter().enumerate() {
                 by_node[node * frames + frame] = singles(at);
             }
         }

@@ -70,7 +70,7 @@ pub(crate) struct Export<'a> {
     /// The requested frames, those of other shards included.
     frames: Vec<u64>,
     /// Checksums of the files of frames written so far, in the order of `frame_files`.
-    written: Vec<u64>,
+    pub(crate) written: Vec<u64>,
 }
 
 /// Files of a run, with grids or surfaces of its bodies.
@@ -155,11 +155,6 @@ impl<'a> Export<'a> {
         Ok(())
     }
 
-    /// Checksums of the files of frames written so far.
-    pub(crate) fn written(&self) -> Vec<u64> {
-        self.written.clone()
-    }
-
     /// The files of a frame, below the output folder.
     fn frame_files(&self, frame: u64) -> impl Iterator<Item = String> {
         let grids =
@@ -239,9 +234,9 @@ impl<'a> Export<'a> {
             let (places, times) = self.moments(run.run, frames).into_iter().unzip();
             let mut course = Course { states: &mut *states, place: run.place, frames: places, times };
             let (mark, name) = (mark(self.scene, None), &self.scene.runs[run.run].name);
-            let head = usda::Head { mark: &mark, name, rate: self.scene.frames_per_second };
+            let rate = self.scene.frames_per_second;
             if self.formats.contains(&Format::Usd) {
-                self.write_course(run, "usda", |to| usda::write(to, &head, run, &mut course))?;
+                self.write_course(run, "usda", |to| usda::write(to, (&mark, name), rate, run, &mut course))?;
             }
             if self.formats.contains(&Format::Gltf) {
                 self.write_course(run, "glb", |to| glb::write(to, (&mark, name), run, &mut course))?;

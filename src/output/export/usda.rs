@@ -10,21 +10,14 @@ use glam::DVec3;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-/// The head of a file: its mark, the name of the run, and the frames per second of the scene (1/s).
-pub(super) struct Head<'h> {
-    pub(super) mark: &'h str,
-    pub(super) name: &'h str,
-    pub(super) rate: f64,
-}
-
-/// Writes a run.
+/// Writes a run. The file has a mark, the name of the run, and the frames per second of the scene (1/s).
 pub(super) fn write(
     to: &mut impl Write,
-    head: &Head<'_>,
+    (mark, name): (&str, &str),
+    rate: f64,
     run: &FilesOf<Surface>,
     course: &mut Course<'_>,
 ) -> io::Result<()> {
-    let Head { mark, name, rate } = head;
     // The unit of time is a frame.
     let codes: Vec<f64> = course.times.iter().map(|time| time * rate).collect();
     let (first, last) = (codes[0], codes[codes.len() - 1]);
@@ -75,13 +68,12 @@ fn samples(
     codes: &[f64],
     of: &dyn Fn(&[DVec3]) -> Vec<DVec3>,
 ) -> io::Result<()> {
-    for what in ["float3[] extent", "point3f[] points", "vector3f[] velocities"] {
+    let shown =
+        [("float3[] extent", "position"), ("point3f[] points", "position"), ("vector3f[] velocities", "velocity")];
+    for (what, quantity) in shown {
         writeln!(to, "        {what}.timeSamples = {{")?;
         for (frame, code) in codes.iter().enumerate() {
-            let of_nodes = match what {
-                "vector3f[] velocities" => course.velocities(frame, &body.nodes)?,
-                _ => course.positions(frame, &body.nodes)?,
-            };
+            let of_nodes = course.read(quantity, frame, &body.nodes)?;
             let mut vectors = of(&body.shown.points(&of_nodes));
             if what == "float3[] extent" {
                 let (low, high) = bounds(&vectors);
