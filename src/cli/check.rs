@@ -2,14 +2,15 @@
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, note_no_room, warn, with_causes};
-#[cfg(feature = "render")]
-use super::options::size;
 use super::options::{PrintOptions, SceneOptions};
+#[cfg(feature = "render")]
+use super::options::{resize, size};
 use super::scenes::{status_of, worse};
 #[cfg(feature = "render")]
 use super::still::doubts;
 #[cfg(not(feature = "render"))]
 use crate::reading::Mistake;
+#[cfg(not(feature = "render"))]
 use crate::scene::Scene;
 use crate::scene::mesh::{MeshSummary, is_mesh};
 use clap::Args;
@@ -54,9 +55,11 @@ impl Check {
                 meshes.push(document);
                 continue;
             }
-            match self.scenes.load(path).map(|scene| self.resized(scene)) {
+            match self.scenes.load(path) {
                 Ok(_) if self.printing.quiet && !self.printing.json => {}
                 Ok(mut scene) => {
+                    #[cfg(feature = "render")]
+                    resize(&mut scene, self.size);
                     let (warnings, no_room) = doubts(&scene);
                     scene.warnings.extend(warnings);
                     if self.printing.json {
@@ -112,19 +115,6 @@ impl Check {
             complain(&format!("{file} {error}"));
         }
         Ok(document)
-    }
-
-    /// A scene in the requested size.
-    #[cfg(feature = "render")]
-    fn resized(&self, mut scene: Scene) -> Scene {
-        if let Some(size) = self.size {
-            (scene.view.size, scene.view.print) = (size, None);
-        }
-        scene
-    }
-    #[cfg(not(feature = "render"))]
-    fn resized(&self, scene: Scene) -> Scene {
-        scene
     }
 }
 

@@ -7,7 +7,6 @@ use super::still::{check_type, source_of};
 use super::{animate, interrupt};
 use crate::animation::Format;
 use crate::gpu::{Gpu, GpuError, adapter_name};
-use crate::look::Plot;
 use crate::output::{
     Clock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn,
     passing_frames, read_tags,
@@ -29,7 +28,7 @@ pub(super) struct Device {
     pub(super) threads: usize,
     /// Whether frames are kept after the command.
     pub(super) keep: bool,
-    /// Whether frames of an earlier command are kept.
+    /// Whether frames of an earlier command are kept if they are the same.
     pub(super) resume: bool,
     /// The files of animations, and the command that makes them.
     pub(super) films: Vec<(Format, PathBuf)>,
@@ -50,8 +49,6 @@ pub(super) struct Drawing<'a> {
     last: Option<(Picture, Arc<Vec<u8>>)>,
     /// The number of pictures that were not drawn again.
     repeated: usize,
-    /// The folder with frames of an earlier command, which are kept if they are the same.
-    drawn_before: Option<PathBuf>,
     /// The number of kept frames.
     kept: usize,
     writer: FrameWriter,
@@ -98,7 +95,6 @@ impl<'a> Drawing<'a> {
             begun: None,
             last: None,
             repeated: 0,
-            drawn_before: device.resume.then(|| folder.clone()),
             kept: 0,
             writer: FrameWriter::new(&folder, writers),
             device: Arc::clone(device),
@@ -193,10 +189,6 @@ fn stopped(keep: bool, error: RenderError) -> Failure {
 }
 
 impl Pictures for Drawing<'_> {
-    fn time_series(&self) -> Option<&[Plot]> {
-        self.scene.time_series()
-    }
-
     fn take_history(&mut self, history: &History) {
         self.composer = Some(Composer::new(self.scene, history));
     }
@@ -204,8 +196,8 @@ impl Pictures for Drawing<'_> {
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
         let (size, dpi) = self.resolution();
         let texts = Tags::of_frame(self.scene, frame, &self.adapter).texts();
-        if let Some(folder) = &self.drawn_before {
-            let path = folder.join(frame_file_name(frame.index));
+        if self.device.resume {
+            let path = self.folder.join(frame_file_name(frame.index));
             if is_drawn(&path, size, &texts, dpi)? {
                 self.kept += 1;
                 return Ok(());
@@ -232,8 +224,10 @@ impl Pictures for Drawing<'_> {
     }
 
     fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure> {
-        let Some(folder) = self.drawn_before.clone() else { return Ok(None) };
-        let path = |frame: u64| folder.join(frame_file_name(frame));
+        if !self.device.resume {
+            return Ok(None);
+        }
+        let path = |frame: u64| self.folder.join(frame_file_name(frame));
         let (size, dpi) = self.resolution();
         for &frame in frames {
             let texts = [

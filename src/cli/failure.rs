@@ -3,7 +3,6 @@
 use crate::output::OutputError;
 use crate::scene::{Mistakes, Scene};
 use std::error::Error;
-use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
@@ -96,13 +95,8 @@ impl From<OutputError> for Failure {
 
 /// An error and its causes on one line.
 pub(super) fn with_causes(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        write!(text, ": {error}").expect("writing to a string");
-        cause = error.source();
-    }
-    text
+    let causes = std::iter::successors(error.source(), |&cause| cause.source());
+    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
 }
 
 /// Prints the warnings of a scene.

@@ -3,10 +3,11 @@
 use super::console;
 use super::failure::{Failure, Status, note_no_room, warn};
 use super::interrupt;
-use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
+use super::options::{DeviceOptions, PrintOptions, ThreadOptions, number_in, size};
 use super::record;
 use super::still::{Still, StillFile, StillFormat, replaceable, size_text};
 use crate::gpu::{Gpu, adapter_name};
+use crate::look::Theme;
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
 use crate::picture::compose_figure;
 use crate::reading::setting::Setting;
@@ -73,7 +74,7 @@ pub(super) struct FigureCommand {
 
     /// The colours: light for papers, dark for talks [default: those of each figure]
     #[arg(long, value_name = "THEME")]
-    theme: Option<ThemeOption>,
+    theme: Option<Theme>,
 
     #[command(flatten)]
     device: DeviceOptions,
@@ -159,7 +160,7 @@ impl FigureCommand {
             bail!("{}: {width}×{height} is too small; expected at least {LEAST_SIDE} pixels a side", figure.name);
         }
         if let Some(theme) = self.theme {
-            figure.set_theme(theme.theme());
+            figure.set_theme(theme);
         }
         Ok(())
     }
@@ -298,7 +299,7 @@ struct Made {
 impl Made {
     /// Compresses and writes the figure, unless the user interrupts the command. Returns whether it did.
     fn write(mut self) -> Result<bool, Failure> {
-        let bytes = self.drawn.file();
+        let bytes = (self.drawn)();
         if interrupt::requested() {
             return Ok(false);
         }

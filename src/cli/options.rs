@@ -7,9 +7,9 @@ use crate::gpu::{AdapterChoice, Gpu};
 #[cfg(feature = "render")]
 use crate::look::Theme;
 use crate::output::export;
-#[cfg(feature = "render")]
-use crate::reading::captions::typed;
 use crate::reading::setting::Setting;
+#[cfg(feature = "render")]
+use crate::scene::Scene;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -107,12 +107,7 @@ pub struct ThreadOptions {
 impl ThreadOptions {
     /// The requested number, or one for each processor.
     pub fn count(self) -> usize {
-        self.count_or(processors())
-    }
-
-    /// The requested number, or `usual`.
-    pub(super) fn count_or(self, usual: usize) -> usize {
-        self.threads.map_or(usual, usize::from)
+        self.threads.map_or_else(processors, usize::from)
     }
 
     /// Starts the threads that share all work outside of runs, such as filling a surface and moving it with its body. A process has
@@ -190,28 +185,14 @@ impl DeviceOptions {
     }
 }
 
-/// A theme by name.
 #[cfg(feature = "render")]
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum ThemeOption {
-    Light,
-    Dark,
-}
-
-#[cfg(feature = "render")]
-impl ThemeOption {
-    /// The colours.
-    pub(super) fn theme(self) -> Theme {
-        match self {
-            Self::Light => Theme::Light,
-            Self::Dark => Theme::Dark,
-        }
+impl ValueEnum for Theme {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Light, Self::Dark]
     }
 
-    /// The theme as a setting of a scene.
-    pub(super) fn setting(self) -> Setting {
-        let name = typed(&self.theme());
-        format!("view.theme={name}").parse().expect("a key and a value")
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(if *self == Self::Light { "light" } else { "dark" }))
     }
 }
 
@@ -238,6 +219,14 @@ pub(super) fn size(typed: &str) -> Result<[u32; 2], String> {
         return Err(format!("a side has {} to {} pixels", SIDES.start(), SIDES.end()));
     }
     Ok(sides)
+}
+
+/// Gives a scene the requested size.
+#[cfg(feature = "render")]
+pub(super) fn resize(scene: &mut Scene, size: Option<[u32; 2]>) {
+    if let Some(size) = size {
+        (scene.view.size, scene.view.print) = (size, None);
+    }
 }
 
 /// The number of threads that this machine runs at the same time.

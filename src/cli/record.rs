@@ -30,17 +30,14 @@ use std::time::Duration;
 /// Begins the pictures of some frames of a scene, in a folder.
 pub(super) type Begin<'d> = dyn for<'s> Fn(&'s Scene, &Path, &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> + 'd;
 
-/// The name of the adapter that draws a scene.
-pub(super) type AdapterOf<'d> = dyn Fn(&Scene) -> String + 'd;
-
-/// Runs all scenes in order and reports on each. If pictures are made, `pictures` names the graphics adapter of a scene and begins its pictures.
+/// Runs all scenes in order and reports on each. If pictures are made, `begin` begins those of a scene.
 pub(super) fn run_all(
     jobs: Vec<Job>,
     options: &RunOptions,
     settings: &[Setting],
     words: &[OsString],
     timings: bool,
-    pictures: Option<(&AdapterOf<'_>, &Begin<'_>)>,
+    begin: Option<&Begin<'_>>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
     let pool = options.threads.pool()?;
@@ -61,11 +58,11 @@ pub(super) fn run_all(
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         summary.set = settings.iter().map(|setting| setting.text().to_owned()).collect();
-        summary.adapter = pictures.map(|(adapter, _)| adapter(&job.scene));
+        summary.adapter = job.adapter.clone();
         // Frames that are not kept count as simulated only.
         summary.frames.size = job.folder.contents().0.kept_size();
         summary.frames.written = summary.frames.size.map(|_| 0);
-        result = record(job, &mut summary, &pool, options, pictures.map(|(_, begin)| begin));
+        result = record(job, &mut summary, &pool, options, begin);
         if options.printing.json {
             let mut document = json!({ "folder": path.to_string_lossy() });
             merge(&mut document, serde_json::to_value(&summary).expect("plain data"));
@@ -105,20 +102,18 @@ fn record(
     options: &RunOptions,
     begin_pictures: Option<&Begin<'_>>,
 ) -> Result<(), Failure> {
-    let Job { scene, runs, frames, all, folder, stored } = job;
+    let Job { scene, runs, frames, all, folder, stored, .. } = job;
     let begin = || -> Result<_, Failure> {
         let mut first = summary.clone();
         if folder.is_shard() {
             (first.outcome, first.frames.asked) = (Outcome::Shards, all.len());
         }
-        let folder = folder.prepare(&first)?;
+        let (folder, checkpoint) = folder.prepare(&first)?;
         let pictures = begin_pictures.map(|begin| begin(&scene, folder.path(), &frames)).transpose()?;
         let export = Export::begin(folder.path(), &scene, &runs, &options.formats(), &all)?;
-        Ok((folder, pictures, export))
+        Ok((folder, checkpoint, pictures, export))
     };
-    let result = begin().and_then(|(mut folder, pictures, export)| {
-        let times = Timings::default();
-        let checkpoint = folder.take_checkpoint();
+    let result = begin().and_then(|(folder, checkpoint, pictures, export)| {
         let session = Session {
             scene: &scene,
             runs: runs.clone(),
@@ -127,7 +122,7 @@ fn record(
             summary,
             last: None,
             sound: Vec::new(),
-            times,
+            times: Timings::default(),
         };
         session.run(pool, options, (pictures, export), stored, checkpoint)
     });
@@ -190,7 +185,7 @@ impl<'a> Session<'a> {
             None => Some(DiagnosticsWriter::create(folder, scene)?),
         };
         self.summary.frames.recorded = progress.as_ref().map_or(0, |progress| progress.taken);
-        let mut simulation = self.simulation(pool, options, pictures.as_deref(), stored, progress)?;
+        let mut simulation = self.simulation(pool, options, pictures.is_some(), stored, progress)?;
         let goes_on = course.is_some();
         let begin = || {
             let made = StatesWriter::create(folder, scene, &self.runs, simulation.frames.states(), course);
@@ -304,17 +299,13 @@ impl<'a> Session<'a> {
         &self,
         pool: &ThreadPool,
         options: &RunOptions,
-        pictures: Option<&dyn Pictures>,
+        is_drawn: bool,
         stored: Option<Stored>,
         progress: Option<Progress>,
     ) -> Result<Simulation<'a>, Failure> {
         let (scene, folder) = (self.scene, self.folder.path());
         let is_whole = self.frames.last() == Some(&scene.last_frame());
-        let shown = match pictures {
-            Some(pictures) => pictures.time_series(),
-            None => scene.time_series().filter(|_| options.states && is_whole),
-        };
-        let is_drawn = pictures.is_some();
+        let shown = scene.time_series().filter(|_| is_drawn || options.states && is_whole);
         let ahead = shown.is_some() && is_drawn;
         let noted = shown.unwrap_or_default().to_vec();
         pool.install(|| {

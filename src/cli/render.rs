@@ -6,18 +6,21 @@ use super::failure::{Failure, Status, note_no_room};
 use super::film::replaceable;
 use super::frames::{Instants, Shard};
 use super::interrupt;
-use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
-use super::record::{self, AdapterOf, Begin};
+use super::options::{DeviceOptions, RunOptions, SceneOptions, resize, size};
+use super::record::{self, Begin};
 use super::scenes::{Wish, nearest};
 use super::still::{
     Still, StillFormat, check_print, one_frame, replaceable as replaceable_still, size_text, source_of,
 };
 use crate::animation::Format;
 use crate::gpu::adapter_name;
+use crate::look::Theme;
 use crate::output::shell;
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of};
 use crate::picture::{Composer, left_out};
 use crate::reading::beside::similar;
+use crate::reading::captions::typed;
+use crate::reading::setting::Setting;
 use crate::reading::words::short;
 use crate::runner::Stored;
 use crate::scene::Scene;
@@ -63,7 +66,7 @@ pub(super) struct Render {
 
     /// The colours: light for papers, dark for talks [default: those of the scene]
     #[arg(long, value_name = "THEME")]
-    theme: Option<ThemeOption>,
+    theme: Option<Theme>,
 
     /// Moments in place of frames, such as 2s, 500ms or 0.5,1: the nearest frame to each is made
     #[arg(long, value_name = "TIME", conflicts_with = "frames", allow_hyphen_values = true)]
@@ -99,11 +102,13 @@ impl Render {
     pub(super) fn run(mut self, words: &[OsString]) -> Result<Status, Failure> {
         self.options.out.as_deref().map_or(Ok(()), StillFormat::check_name)?;
         // The theme is a key of the scene, so frames of two themes belong to two scenes.
-        self.scenes.set.extend(self.theme.map(ThemeOption::setting));
+        let setting =
+            |theme: Theme| -> Setting { format!("view.theme={}", typed(&theme)).parse().expect("a key and a value") };
+        self.scenes.set.extend(self.theme.map(setting));
         self.options.threads.start()?;
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
-        scenes.iter_mut().for_each(|scene| self.resize(scene));
-        scenes.iter().try_for_each(|scene| self.check(scene))?;
+        scenes.iter_mut().for_each(|scene| resize(scene, self.size));
+        scenes.iter().try_for_each(|scene| check_print(scene, &self.options.runs(scene)?))?;
         if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, StillFormat::of(out)?))) {
             for scene in scenes.iter().filter(|_| !self.options.printing.quiet) {
                 note_no_room(&source_of(scene), scene.view.size, &left_out(scene));
@@ -133,8 +138,9 @@ impl Render {
         let lit = jobs.iter().map(|job| &job.scene).filter(|scene| scene.is_lit());
         let gpu = self.device.open(lit.map(|scene| scene.view.size))?;
         jobs.iter().try_for_each(|job| self.tell_moments(&job.scene))?;
-        let opened = gpu.clone();
-        let adapter = |scene: &Scene| adapter_name(opened.as_ref().filter(|_| scene.is_lit()));
+        for job in &mut jobs {
+            job.adapter = Some(adapter_name(gpu.as_ref().filter(|_| job.scene.is_lit())));
+        }
         let device = Arc::new(Device {
             gpu,
             threads: self.options.threads.count(),
@@ -144,15 +150,7 @@ impl Render {
             words: words.to_vec(),
         });
         let begin: &Begin<'_> = &|scene, folder, frames| Ok(Box::new(Drawing::begin(&device, scene, folder, frames)?));
-        let pictures = Some((&adapter as &AdapterOf<'_>, begin));
-        record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures)
-    }
-
-    /// Gives a scene the requested size.
-    fn resize(&self, scene: &mut Scene) {
-        if let Some(size) = self.size {
-            (scene.view.size, scene.view.print) = (size, None);
-        }
+        record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, Some(begin))
     }
 
     /// Prints the frames of the requested moments.
@@ -161,11 +159,6 @@ impl Render {
         let line =
             |(time, frame)| format!("{} s: frame {frame}, at {} s\n", short(time), short(scene.frame_time(frame)));
         nearest(at, scene)?.into_iter().map(line).try_for_each(|line| console::print(&line))
-    }
-
-    /// Checks that a scene can be drawn.
-    fn check(&self, scene: &Scene) -> Result<(), Failure> {
-        check_print(scene, &self.options.runs(scene)?)
     }
 
     /// Draws one frame into a file of its own.
@@ -211,7 +204,7 @@ impl Render {
         let source = source_of(scene);
         let (print, title) = (scene.view.print.as_ref(), &scene.title);
         let still = Still { picture: &picture, print, source: &source, title, tags: &tags };
-        file.append(&still.draw(format, gpu.as_ref())?.file())?;
+        file.append(&still.draw(format, gpu.as_ref())?())?;
         file.commit()?;
         if self.options.printing.prints_text() {
             console::print(&format!("{name}  {}\n", size_text(format, scene.view.size, print)))?;

@@ -5,7 +5,6 @@ use crate::output::{Numbers, Outcome, RunEntry, RunStatus, Spent, Summary};
 use crate::reading::captions::quantity;
 use crate::reading::words::{several, short};
 use crate::sim::{Diagnostic, Unsolved};
-use std::fmt::Write;
 use std::path::Path;
 
 /// A block of text: the results and their folder, the state of each run at the end, and the time taken.
@@ -29,14 +28,10 @@ fn made(summary: &Summary, folder: &Path) -> String {
         Outcome::Interrupted => format!("interrupted after {made} of {} frames", frames.asked),
         _ => format!("{made} frame{plural}"),
     };
-    match frames.size {
-        Some([width, height]) => write!(text, " of {width}×{height}"),
-        None => write!(text, " simulated"),
-    }
-    .expect("writing to a string");
-    write!(text, " in {}", folder.display()).expect("writing to a string");
+    let size = frames.size.map_or(" simulated".to_owned(), |[width, height]| format!(" of {width}×{height}"));
+    text += &format!("{size} in {}", folder.display());
     if let Some([reached, end]) = summary.reached {
-        write!(text, ", simulated to {} s of {} s", short(reached), short(end)).expect("writing to a string");
+        text += &format!(", simulated to {} s of {} s", short(reached), short(end));
     }
     match frames.kept {
         0 => text,

@@ -1,7 +1,6 @@
 //! Writes the results of frames, and the checkpoints from which an interrupted command continues.
 
 use super::failure::{Failure, note, with_causes};
-use crate::look::Plot;
 use crate::output::export::Export;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
@@ -10,8 +9,6 @@ use std::time::{Duration, Instant};
 
 /// Makes pictures of frames, for one scene.
 pub(super) trait Pictures {
-    /// The charts whose time series are needed before the first frame; `None` if none are.
-    fn time_series(&self) -> Option<&[Plot]>;
     /// Sets the time series of the scene.
     fn take_history(&mut self, history: &History);
     /// Draws a frame. It is written now or a little later.

@@ -74,6 +74,8 @@ pub(super) struct Job {
     /// The frames of all shards together.
     pub(super) all: Vec<u64>,
     pub(super) folder: Folder,
+    /// The graphics adapter that draws the scene, if pictures are made.
+    pub(super) adapter: Option<String>,
     /// The states of the frames, if they are read from a file.
     pub(super) stored: Option<Stored>,
 }
@@ -134,13 +136,22 @@ impl RunOptions {
                 "{} holds {what}, and a shard only adds frames; choose another folder with -o, or empty this one",
                 path.display()
             )),
-            error => occupied(error, words),
+            OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", with_option(words, "--overwrite"))),
+            error => error.into(),
         })?;
-        Ok(Job { runs, frames, all, folder, scene, stored: None })
+        Ok(Job { runs, frames, all, folder, scene, adapter: None, stored: None })
     }
 
+    /// The numbers of a scene's runs with the names of `--only`, or of all of them.
     pub(super) fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
-        runs_of(&self.only, scene)
+        let (only, names) = (&self.only, scene.runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>());
+        if let Some(unknown) = only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
+            let (message, help) = scene.no_run(unknown);
+            let help = help.map_or(String::new(), |help| format!("; {help}"));
+            bail!("--only: {message}{help}");
+        }
+        let is_wanted = |name: &str| only.is_empty() || only.iter().any(|only| only == name);
+        Ok((0..names.len()).filter(|&run| is_wanted(names[run])).collect())
     }
 
     /// The requested frames of a scene, in rising order.
@@ -161,26 +172,6 @@ impl RunOptions {
 pub(super) fn nearest(at: &Instants, scene: &Scene) -> Result<Vec<(f64, u64)>, Failure> {
     let found = at.nearest(scene.last_frame(), scene.duration, scene.frames_per_second);
     found.map_err(|message| Failure::usage(format!("--at: in “{}” {message}", scene.title)))
-}
-
-/// The numbers of a scene's runs with the names of `--only`, or of all of them.
-pub(super) fn runs_of(only: &[String], scene: &Scene) -> Result<Vec<usize>, Failure> {
-    let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
-    if let Some(unknown) = only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
-        let (message, help) = scene.no_run(unknown);
-        let help = help.map_or(String::new(), |help| format!("; {help}"));
-        bail!("--only: {message}{help}");
-    }
-    let is_wanted = |name: &str| only.is_empty() || only.iter().any(|only| only == name);
-    Ok((0..names.len()).filter(|&run| is_wanted(names[run])).collect())
-}
-
-/// Why a folder cannot be used. The message has the command, made from these `words`, that replaces its contents.
-pub(super) fn occupied(error: OutputError, words: &[OsString]) -> Failure {
-    match error {
-        OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", with_option(words, "--overwrite"))),
-        error => error.into(),
-    }
 }
 
 /// The same command with another option, in a place where it is not taken for a value.

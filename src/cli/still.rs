@@ -8,6 +8,7 @@ use crate::look::Print;
 use crate::output::{Compression, OutputError, encode_print, read_tags};
 use crate::picture::{Composer, Picture, left_out, type_left_out};
 use crate::reading::Mistake;
+use crate::reading::collector::{key_path, mistake};
 use crate::reading::words::short;
 use crate::render::{RenderError, Renderer};
 use crate::runner::Frame;
@@ -169,18 +170,11 @@ pub fn doubts(scene: &Scene) -> (Vec<Mistake>, Vec<String>) {
     let is_cut = || first_picture(scene, &runs).panels.iter().any(|panel| panel.is_cut);
     let cut = (!scene.view.camera.follow && is_cut()).then(|| {
         let help = "move the camera back, or let it follow: leave out `target` and `distance`";
-        ("view.camera", ["the body leaves its panel at the start", help].map(str::to_owned))
+        ("camera", ["the body leaves its panel at the start", help].map(str::to_owned))
     });
-    let small = too_small(scene, &runs).map(|words| ("view.size", words));
-    let warning = |(place, [message, help]): (&str, [String; 2])| Mistake {
-        line: 0,
-        column: 0,
-        place: place.to_owned(),
-        message,
-        help: Some(help),
-        excerpt: String::new(),
-        marked: 0..0,
-    };
+    let small = too_small(scene, &runs).map(|words| ("size", words));
+    let warning =
+        |(key, [message, help]): (&str, [String; 2])| mistake(None, 0..0, &key_path!["view", key], message, Some(help));
     (cut.into_iter().chain(small).map(warning).collect(), left_out(scene))
 }
 
@@ -210,8 +204,8 @@ impl Still<'_> {
         match format {
             StillFormat::Png => {
                 let pixels = draw(gpu, picture)?;
-                let dpi = self.print.map(|print| print.dpi);
-                Ok(StillFile::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
+                let (size, tags, dpi) = (picture.size, self.tags.to_vec(), self.print.map(|print| print.dpi));
+                Ok(Box::new(move || encode_print(size, &pixels, &tags, Compression::Small, dpi)))
             }
             StillFormat::Vector(format) => {
                 let size_mm = self.print.map(|print| print.mm);
@@ -224,7 +218,8 @@ impl Still<'_> {
                     maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),
                     tags: self.tags,
                 };
-                vector::write(&page, format).map(StillFile::Vectors).map_err(|error| Failure::usage(error.to_string()))
+                let file = vector::write(&page, format).map_err(|error| Failure::usage(error.to_string()))?;
+                Ok(Box::new(move || file))
             }
         }
     }
@@ -235,19 +230,5 @@ fn draw(gpu: Option<&Gpu>, picture: &Picture) -> Result<Vec<u8>, RenderError> {
     Ok(Renderer::new(gpu, picture.size)?.draw(picture)?.into_raw())
 }
 
-/// A drawn picture.
-pub(super) enum StillFile {
-    /// Pixels that are not compressed yet, which takes longest.
-    Pixels { size: [u32; 2], pixels: Vec<u8>, tags: Vec<(&'static str, String)>, dpi: Option<f64> },
-    /// The file.
-    Vectors(Vec<u8>),
-}
-
-impl StillFile {
-    pub(super) fn file(self) -> Vec<u8> {
-        match self {
-            Self::Pixels { size, pixels, tags, dpi } => encode_print(size, &pixels, &tags, Compression::Small, dpi),
-            Self::Vectors(file) => file,
-        }
-    }
-}
+/// Makes the file of a drawn picture. Pixels are compressed here, which takes longest.
+pub(super) type StillFile = Box<dyn FnOnce() -> Vec<u8> + Send>;

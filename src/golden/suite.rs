@@ -8,7 +8,6 @@ use super::folder::Golden;
 use crate::gpu::AdapterChoice;
 use crate::scene::Limits;
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -156,10 +155,7 @@ impl Suite {
         if complaints.is_empty() {
             return;
         }
-        let mut text = String::new();
-        for complaint in &complaints {
-            write!(text, "\n\n{complaint}").expect("writing to a string");
-        }
+        let text: String = complaints.iter().map(|complaint| format!("\n\n{complaint}")).collect();
         panic!("{} of the goldens in {} are not as they were:{text}\n", complaints.len(), self.goldens.display());
     }
 

@@ -94,15 +94,15 @@ impl Folder {
 
     /// Creates the folder if necessary, locks it, removes replaced results, and writes a `summary`, which marks the
     /// folder as this scene's even if the program is killed. Leftovers of killed processes are removed, except for a
-    /// checkpoint to continue from and its files.
+    /// checkpoint to continue from, which is returned, and its files.
     ///
     /// # Errors
     /// If the folder cannot be created or written to, or its checkpoint does not belong to the manifest; and the errors of
     /// [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
-    pub(crate) fn prepare(self, summary: &Summary) -> Result<Claimed, OutputError> {
+    pub(crate) fn prepare(self, summary: &Summary) -> Result<(Claimed, Option<Checkpoint>), OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         if self.access.shard {
-            return self.prepare_shared(summary);
+            return Ok((self.prepare_shared(summary)?, None));
         }
         let lock = FolderLock::alone(&self.path)?;
         let read = || Checkpoint::read(&self.path, &self.scene, &self.manifest);
@@ -115,7 +115,7 @@ impl Folder {
         }
         found.remove(&self.path)?;
         summary.write(&self.path)?;
-        Ok(Claimed { folder: self, checkpoint, _lock: lock })
+        Ok((Claimed { folder: self, _lock: lock }, checkpoint))
     }
 
     /// Prepares the folder for a shard, beside processes with other shards. The summary is that of the first process.
@@ -125,7 +125,7 @@ impl Folder {
             summary.write(&self.path)?;
         }
         self.remove_leftovers()?;
-        Ok(Claimed { folder: self, checkpoint: None, _lock: lock })
+        Ok(Claimed { folder: self, _lock: lock })
     }
 
     /// Removes leftovers of killed processes that wrote the same files.
@@ -142,7 +142,6 @@ impl Folder {
 #[derive(Debug)]
 pub(crate) struct Claimed {
     folder: Folder,
-    checkpoint: Option<Checkpoint>,
     _lock: FolderLock,
 }
 
@@ -151,13 +150,6 @@ impl Deref for Claimed {
 
     fn deref(&self) -> &Folder {
         &self.folder
-    }
-}
-
-impl Claimed {
-    /// Takes the checkpoint to continue from, if there is one.
-    pub(crate) fn take_checkpoint(&mut self) -> Option<Checkpoint> {
-        self.checkpoint.take()
     }
 }
 
