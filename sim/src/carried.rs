@@ -77,6 +77,7 @@ impl Weights {
     ///
     /// # Panics
     /// If there is no such point, or a node is missing.
+    #[inline]
     pub fn place(&self, point: usize, nodes: &[DVec3]) -> DVec3 {
         let (of, weights) = self.of(point);
         of.iter().zip(weights).map(|(&node, &weight)| nodes[node as usize] * weight).sum()
