@@ -2,7 +2,6 @@
 
 use super::body::Body;
 use super::crew::Crew;
-use super::diagnostics::{BodyFacts, Lazy, Outside};
 use super::fill;
 use super::model::Report;
 use super::placement::Placement;
@@ -10,6 +9,7 @@ use super::rotation::{self, moment};
 use super::state::Nodes;
 use super::volume::{Affine, at_rest, mean, volumes_by_faces};
 use glam::DVec3;
+use std::cell::LazyCell;
 use std::sync::Arc;
 
 /// The precomputed part of the diagnostics of a body.
@@ -26,6 +26,41 @@ pub(crate) struct Diagnose {
     rest_centre: DVec3,
     /// Rest positions relative to their mean (m).
     pub(super) centred: Vec<DVec3>,
+}
+
+/// A value that is computed when it is first used.
+pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
+
+/// What is known of what acts on a body from outside.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Outside {
+    /// The mean force of contact (N) and its torque about the origin (N m).
+    pub(super) contact: Option<[DVec3; 2]>,
+    /// The same of kinematic constraints.
+    pub(super) grips: Option<[DVec3; 2]>,
+    /// Its triangles that cross its own or those of obstacles, and those that cross those of other bodies.
+    pub(super) crossings: Option<[usize; 2]>,
+    /// The work of loads since the start (J).
+    pub(super) work: Option<f64>,
+}
+
+/// The quantities of one body from which diagnostics are computed.
+pub(super) struct BodyFacts<'a> {
+    /// What is known of it at rest.
+    pub(super) of: &'a Diagnose,
+    pub(super) state: Nodes<'a>,
+    /// Rotations that the global solver has computed.
+    pub(super) global_rotations: f64,
+    /// Elements or springs that are broken; NaN if none can be.
+    pub(super) broken: f64,
+    pub(super) outside: Outside,
+    /// Energy and residuals from the model.
+    pub(super) report: Lazy<'a, Report>,
+    /// Signed volume of each element (m³, in the plane m²).
+    pub(super) volumes: Lazy<'a, Vec<f64>>,
+    /// Whether each element is broken; empty if none can be.
+    pub(super) gone: Vec<bool>,
+    pub(super) placement: Lazy<'a, Placement>,
 }
 
 impl Diagnose {

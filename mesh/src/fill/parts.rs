@@ -10,7 +10,7 @@ mod joining;
 use super::clip::{self, Piece};
 use super::facet::Facet;
 use super::lattice::{Full, Lattice, corner};
-use super::sight::Sight;
+use super::sight::{Local, Sight};
 use super::union::Tangle;
 use crate::Surface;
 use crate::edges::{EdgeUse, Sets, net};
@@ -73,25 +73,6 @@ impl Patches<'_> {
     /// About how often it is asked whether a line meets a triangle to tell what the patches bound.
     pub(super) fn effort(&self, inside: &Inside) -> f64 {
         Tangle::effort(self.pieces.len(), inside) + Sight::effort(self.pieces.len(), self.count)
-    }
-}
-
-/// The parts of the inside in one cell.
-#[derive(Clone, Debug)]
-pub(super) struct Local {
-    /// The part that each piece of the surface bounds.
-    pub(super) part_of: Vec<u32>,
-    /// The volume of each part, in cells.
-    pub(super) volumes: Vec<f64>,
-    /// The part at the middle of each face, if one is there: low and high along x, y and z. Of a single part it is not tried.
-    pub(super) faces: [Option<u32>; 6],
-    /// Whether the surface is open in the cell, so that it has one part.
-    pub(super) open: bool,
-}
-
-impl Local {
-    pub(super) fn whole(pieces: usize, volume: f64, open: bool) -> Self {
-        Self { part_of: vec![0; pieces], volumes: vec![volume], faces: [Some(0); 6], open }
     }
 }
 

@@ -1,11 +1,29 @@
 //! What sees what in a cell: which patches of the surface bound the same part of the inside.
 
 use super::facet::Facet;
-use super::parts::Local;
 use super::union::Tangle;
 use crate::edges::Sets;
 use glam::DVec3;
 use std::ops::Range;
+
+/// The parts of the inside in one cell.
+#[derive(Clone, Debug)]
+pub(super) struct Local {
+    /// The part that each piece of the surface bounds.
+    pub(super) part_of: Vec<u32>,
+    /// The volume of each part, in cells.
+    pub(super) volumes: Vec<f64>,
+    /// The part at the middle of each face, if one is there: low and high along x, y and z. Of a single part it is not tried.
+    pub(super) faces: [Option<u32>; 6],
+    /// Whether the surface is open in the cell, so that it has one part.
+    pub(super) open: bool,
+}
+
+impl Local {
+    pub(super) fn whole(pieces: usize, volume: f64, open: bool) -> Self {
+        Self { part_of: vec![0; pieces], volumes: vec![volume], faces: [Some(0); 6], open }
+    }
+}
 
 /// What sees what in a cell, and what is known so far of the parts that patches bound.
 pub(super) struct Sight<'f> {

@@ -1,10 +1,30 @@
 //! What contact sees of the end of a step.
 
 use super::Impulses;
-use super::rule::{Motion, Timing};
 use crate::motion::Interval;
 use crate::state::Nodes;
 use glam::DVec3;
+
+/// The velocity with which nodes moved in a step, and the one that decides a rebound.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Timing {
+    /// They moved with the velocity at the end, as by semi-implicit Euler. The mean of those at the start and at the end decides.
+    #[default]
+    End,
+    /// They moved with the mean of those at the start and at the end, as by other methods. The one at the start decides: the impulse acts as
+    /// if it were given there.
+    Start,
+}
+
+impl Timing {
+    /// The shares of the change of velocity in the step, from the end backwards, for the rebound and for the motion.
+    pub(super) fn lags(self) -> [f64; 2] {
+        match self {
+            Self::End => [0.5, 0.0],
+            Self::Start => [1.0, 0.5],
+        }
+    }
+}
 
 /// The end of a step, as contact sees and changes it: the nodes of surfaces, without gaps between their numbers.
 pub(crate) struct End<'a> {
@@ -18,6 +38,27 @@ pub(crate) struct End<'a> {
     pub(crate) changed: &'a mut Vec<u32>,
     /// Where impulses are added up, if anywhere.
     pub(crate) impulses: Option<&'a Impulses>,
+}
+
+/// How a node moves at the end of a step: what contact reads only of those that come near enough, in one line of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Motion {
+    /// At the end of the step (m/s).
+    pub(super) velocity: DVec3,
+    /// The velocity at the start of the step minus that at its end, before contact (m/s).
+    pub(super) slowed: DVec3,
+    /// 1/m (1/kg), zero for nodes that are held and points of obstacles.
+    pub(super) inverse_mass: f64,
+    /// Whether contact has changed it.
+    pub(super) is_changed: bool,
+}
+
+impl Motion {
+    /// That of a point with a velocity (m/s) that contact cannot change.
+    pub(super) fn held(velocity: DVec3) -> Self {
+        Self { velocity, slowed: DVec3::ZERO, inverse_mass: 0.0, is_changed: false }
+    }
 }
 
 /// The nodes of surfaces, and after them the points of obstacles, in a step.

@@ -2,14 +2,11 @@
 //!
 //! A half-space is a facet without sides. The foot of a point on its plane is a point that is held.
 
-use super::end::End;
-use super::known::Known;
-use super::points::{ContactPoint, SLACK};
-use super::rule::{Law, Motion, Term, Touch};
-use super::stage::Stage;
+use super::Obstacle;
+use super::end::Motion;
+use super::rule::{Law, Term, Touch};
 use super::surface::Surface;
 use super::touches::Touches;
-use super::{Obstacle, Side};
 use crate::body::Body;
 use crate::motion::Interval;
 use glam::DVec3;
@@ -19,11 +16,11 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(super) struct Ground {
     /// The number of the body.
-    body: usize,
+    pub(super) body: usize,
     /// The number of the obstacle.
-    number: usize,
+    pub(super) number: usize,
     obstacle: Obstacle,
-    law: Law,
+    pub(super) law: Law,
 }
 
 /// Points that were near a plane, with the heights of all nodes of the surface then (m); without heights nothing
@@ -35,18 +32,18 @@ pub(super) struct Near {
     /// How far points may move towards the plane (m) until others may touch it.
     skin: f64,
     /// What touches in this step.
-    touches: Touches,
+    pub(super) touches: Touches,
 }
 
 /// A plane: all points with `normal · x = height`.
 #[derive(Clone, Copy)]
-struct Plane {
+pub(super) struct Plane {
     normal: DVec3,
     height: f64,
 }
 
 impl Plane {
-    fn above(self, point: DVec3) -> f64 {
+    pub(super) fn above(self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.height
     }
 }
@@ -66,7 +63,7 @@ impl Ground {
         all.collect()
     }
 
-    fn plane(&self, time: f64) -> Plane {
+    pub(super) fn plane(&self, time: f64) -> Plane {
         let (normal, height) = self.obstacle.half_space(time).unwrap_or((DVec3::Y, f64::NEG_INFINITY));
         Plane { normal, height }
     }
@@ -105,7 +102,7 @@ impl Ground {
     }
 
     /// Finds the points that come nearer to the plane than the distance that is kept. Their feet are added to `feet`, with their motions.
-    fn look(
+    pub(super) fn look(
         &self,
         near: &mut Near,
         surface: &Surface,
@@ -138,38 +135,5 @@ impl Ground {
             let terms = [first, terms.len() as u32];
             all.push(Touch { normal: plane.normal, distance, keeps_law: true, drag: DVec3::ZERO, terms });
         }
-    }
-
-    /// Adds the points of its surface that touch it at a time (s), with positions of nodes (m).
-    pub(super) fn points(&self, surfaces: &[Surface], position: &[DVec3], time: f64, found: &mut Vec<ContactPoint>) {
-        let (plane, points, from) = (self.plane(time), &surfaces[self.body].points, Side::Obstacle(self.number));
-        let places = (0..points.len()).map(|point| points.place(point, position));
-        let touching = places.filter(|&at| plane.above(at) < self.law.gap * (1.0 + SLACK));
-        found.extend(touching.map(|at| ContactPoint { from, on: self.body, at }));
-    }
-}
-
-impl Stage {
-    /// Lets surfaces meet half-spaces at the end of a step, in the order of bodies, half-spaces and points.
-    pub(super) fn meet_grounds(&self, known: &mut Known, end: &End<'_>) {
-        let Known { ends, near, feet, .. } = known;
-        if self.grounds.is_empty() {
-            return;
-        }
-        near.resize(self.grounds.len(), Near::default());
-        feet.clear();
-        let places = [&ends.start[..], &ends.position];
-        for (ground, near) in self.grounds.iter().zip(&mut *near) {
-            ground.look(near, &self.surfaces[ground.body], places, end.interval, feet);
-        }
-        let count = ends.position.len();
-        ends.position.extend(feet.iter().map(|(foot, _)| foot));
-        ends.motion.extend(feet.iter().map(|(_, motion)| motion));
-        for (Ground { body, number, law, .. }, near) in self.grounds.iter().zip(near) {
-            ends.push(&near.touches, *law, [Side::Body(*body), Side::Obstacle(*number)], count as u32, end);
-        }
-        ends.position.truncate(count);
-        ends.motion.truncate(count);
-        ends.go_on(end);
     }
 }

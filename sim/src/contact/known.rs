@@ -1,10 +1,9 @@
 //! What a step of contact knows of the step before.
 
-use super::end::Ends;
+use super::end::{Ends, Motion};
 use super::extent::Extent;
 use super::ground::Near;
 use super::pair::{Look, Pair};
-use super::rule::Motion;
 use super::shown::Shown;
 use glam::DVec3;
 use std::sync::{Mutex, MutexGuard, PoisonError};

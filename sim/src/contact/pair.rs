@@ -109,7 +109,7 @@ impl Pair {
             let mut found = Vec::new();
             sweep(sides, reach, axes, |features| found.push(features));
             if self.of[0] == self.of[1] {
-                let at: Vec<_> = one.surface.places(&seen.stage.rest).collect();
+                let at: Vec<_> = one.surface.places(seen.rest).collect();
                 let rest = Placed { surface: one.surface, at: &at };
                 found.retain(|&features| is_free(one.surface, kind, features));
                 kind.find([rest; 2], &found, &mut self.look.found);

@@ -2,9 +2,11 @@
 
 use super::Side;
 use super::features::Kind;
+use super::ground::Ground;
 use super::pair::Pair;
 use super::shown::{Seen, Shown};
 use super::stage::Stage;
+use super::surface::Surface;
 use glam::DVec3;
 
 /// A place where a body touches an obstacle, another body or itself.
@@ -19,7 +21,7 @@ pub struct ContactPoint {
 }
 
 /// What touches is at most this share of the distance that is kept farther apart than that.
-pub(super) const SLACK: f64 = 0.1;
+const SLACK: f64 = 0.1;
 
 /// Places of a pair that are nearer than so many times the distance that is kept are one: the fifth part of a usual element.
 const SAME: f64 = 8.0;
@@ -30,7 +32,7 @@ impl Stage {
         let places = self.place(position, time);
         let mut shown = vec![Shown::default(); self.surfaces.len()];
         shown.iter_mut().zip(&self.surfaces).for_each(|(shown, surface)| shown.place(surface, &places));
-        let seen = Seen { stage: self, start: &shown, interval: None };
+        let seen = self.seen(&shown, None);
         let mut pairs = Vec::new();
         self.choose(&places, 0.0, &mut pairs);
         let mut found = Vec::new();
@@ -57,5 +59,15 @@ impl Stage {
                 }
             }
         }
+    }
+}
+
+impl Ground {
+    /// Adds the points of its surface that touch it at a time (s), with positions of nodes (m).
+    fn points(&self, surfaces: &[Surface], position: &[DVec3], time: f64, found: &mut Vec<ContactPoint>) {
+        let (plane, points, from) = (self.plane(time), &surfaces[self.body].points, Side::Obstacle(self.number));
+        let places = (0..points.len()).map(|point| points.place(point, position));
+        let touching = places.filter(|&at| plane.above(at) < self.law.gap * (1.0 + SLACK));
+        found.extend(touching.map(|at| ContactPoint { from, on: self.body, at }));
     }
 }

@@ -2,7 +2,8 @@
 
 use super::closest::{of_segments, of_triangle};
 use super::end::Ends;
-use super::rule::{Law, Motion, Term, Touch};
+use super::end::Motion;
+use super::rule::{Law, Term, Touch};
 use crate::noise::Noise;
 use glam::DVec3;
 

@@ -6,7 +6,7 @@
 //!
 //! Impulses that are distributed over nodes by weights: F. Cirak and M. West, Int. J. Numer. Meth. Engng 64, 1078 (2005).
 
-use super::end::Ends;
+use super::end::{Ends, Timing};
 use glam::{DMat3, DVec2, DVec3};
 
 /// How two surfaces meet.
@@ -25,27 +25,6 @@ impl Law {
     /// them would brake what slides over a flat surface, at each of its edges. These shares lose little speed there, and let hardly anything cross.
     fn of_nearly_least(self) -> Self {
         Self { gap: 0.25 * self.gap, restitution: 0.5 * self.restitution, ..self }
-    }
-}
-
-/// The velocity with which nodes moved in a step, and the one that decides a rebound.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Timing {
-    /// They moved with the velocity at the end, as by semi-implicit Euler. The mean of those at the start and at the end decides.
-    #[default]
-    End,
-    /// They moved with the mean of those at the start and at the end, as by other methods. The one at the start decides: the impulse acts as
-    /// if it were given there.
-    Start,
-}
-
-impl Timing {
-    /// The shares of the change of velocity in the step, from the end backwards, for the rebound and for the motion.
-    pub(super) fn lags(self) -> [f64; 2] {
-        match self {
-            Self::End => [0.5, 0.0],
-            Self::Start => [1.0, 0.5],
-        }
     }
 }
 
@@ -70,27 +49,6 @@ pub(super) struct Touch {
     pub(super) drag: DVec3,
     /// Where its terms begin and end.
     pub(super) terms: [u32; 2],
-}
-
-/// How a node moves at the end of a step: what contact reads only of those that come near enough, in one line of the cache.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(super) struct Motion {
-    /// At the end of the step (m/s).
-    pub(super) velocity: DVec3,
-    /// The velocity at the start of the step minus that at its end, before contact (m/s).
-    pub(super) slowed: DVec3,
-    /// 1/m (1/kg), zero for nodes that are held and points of obstacles.
-    pub(super) inverse_mass: f64,
-    /// Whether contact has changed it.
-    pub(super) is_changed: bool,
-}
-
-impl Motion {
-    /// That of a point with a velocity (m/s) that contact cannot change.
-    pub(super) fn held(velocity: DVec3) -> Self {
-        Self { velocity, slowed: DVec3::ZERO, inverse_mass: 0.0, is_changed: false }
-    }
 }
 
 /// Whether all further bounces of a pair would be over within some steps, so that it comes to rest now: with a restitution below 1 each one is

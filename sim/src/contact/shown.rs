@@ -1,7 +1,7 @@
 //! Surfaces at the start of a step: the places of their points, and which of their edges are flat.
 
 use super::sleepers::Sleepers;
-use super::stage::Stage;
+use super::solid::Solid;
 use super::surface::{Placed, Surface};
 use crate::motion::Interval;
 use glam::DVec3;
@@ -93,7 +93,11 @@ impl Shown {
 /// What is known of a step when pairs are looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
-    pub(super) stage: &'a Stage,
+    /// Those of bodies, then those of obstacles with an extent.
+    pub(super) surfaces: &'a [Surface],
+    /// Where the nodes of bodies are at rest (m).
+    pub(super) rest: &'a [DVec3],
+    pub(super) solids: &'a [Solid],
     /// The surfaces at the start of the step; of those in pairs.
     pub(super) start: &'a [Shown],
     /// That of the step; `None` where it is not asked for how [round obstacles turn](super::rule::Touch::drag).
@@ -102,7 +106,16 @@ pub(super) struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     pub(super) fn placed(&self, surface: usize) -> Placed<'a> {
-        Placed { surface: &self.stage.surfaces[surface], at: &self.start[surface].points }
+        Placed { surface: &self.surfaces[surface], at: &self.start[surface].points }
+    }
+
+    /// [`Solid::drag`] of a surface; zero for all that are not round obstacles.
+    pub(super) fn drag(&self, surface: usize, at: DVec3, out: DVec3) -> DVec3 {
+        let solid = surface.checked_sub(self.surfaces.len() - self.solids.len());
+        match (solid.filter(|_| self.surfaces[surface].is_round), self.interval) {
+            (Some(solid), Some(interval)) => self.solids[solid].drag(interval, at, out),
+            _ => DVec3::ZERO,
+        }
     }
 }
 

@@ -5,6 +5,8 @@ use super::extent::Extent;
 use super::ground::Ground;
 use super::known::Memory;
 use super::rule::Law;
+use super::shown::{Seen, Shown};
+use super::solid::Solid;
 use super::surface::{Placed, Surface};
 use super::{Contacts, Obstacle, PairContact, Side};
 use crate::body::Body;
@@ -27,17 +29,6 @@ pub(crate) struct Stage {
     pub(super) inverse_mass: Vec<f64>,
     pub(super) grounds: Vec<Ground>,
     pub(super) known: Memory,
-}
-
-/// An obstacle with an extent, and its points at the start (m).
-#[derive(Clone, Debug)]
-pub(super) struct Solid {
-    /// Its number among all obstacles.
-    number: usize,
-    obstacle: Obstacle,
-    points: Vec<DVec3>,
-    /// The greatest speed of its points (m/s).
-    pub(super) greatest_speed: f64,
 }
 
 impl Stage {
@@ -136,16 +127,9 @@ impl Stage {
         }
     }
 
-    /// The velocity (m/s) of the surface of a round obstacle, at a way `out` (m) from a point of its axis at the start of a step, beside that of
-    /// this point.
-    pub(super) fn drag(&self, surface: usize, interval: Interval, at: DVec3, out: DVec3) -> DVec3 {
-        let Some(solid) = surface.checked_sub(self.bodies).filter(|_| self.surfaces[surface].is_round) else {
-            return DVec3::ZERO;
-        };
-        let Obstacle { pivot, .. } = self.obstacles[solid].obstacle;
-        let [before, after] = [interval.begin, interval.end].map(|time| self.obstacles[solid].obstacle.pose(time));
-        let way = |point: DVec3| after.apply(pivot, before.undo(pivot, point)) - point;
-        (way(at + out) - way(at)) / interval.step
+    /// What pairs are looked at with: surfaces in a step, or at one moment without an interval.
+    pub(super) fn seen<'a>(&'a self, start: &'a [Shown], interval: Option<Interval>) -> Seen<'a> {
+        Seen { surfaces: &self.surfaces, rest: &self.rest, solids: &self.obstacles, start, interval }
     }
 
     /// The number of pairs of facets that cross at a time (s), of each two surfaces that meet, with positions of all nodes (m).

@@ -2,10 +2,11 @@
 
 use super::end::{End, Ends};
 use super::features::Kind;
+use super::ground::{Ground, Near};
 use super::known::Known;
 use super::pair::Look;
 use super::rule::{Law, Term};
-use super::shown::{Seen, Shown, Way};
+use super::shown::{Shown, Way};
 use super::stage::Stage;
 use super::touches::Touches;
 use super::{Side, Source};
@@ -35,6 +36,29 @@ impl Stage {
         self.go(known, crew);
         self.meet(known, &end, crew);
         known.ends.give(&mut end);
+    }
+
+    /// Lets surfaces meet half-spaces at the end of a step, in the order of bodies, half-spaces and points.
+    fn meet_grounds(&self, known: &mut Known, end: &End<'_>) {
+        let Known { ends, near, feet, .. } = known;
+        if self.grounds.is_empty() {
+            return;
+        }
+        near.resize(self.grounds.len(), Near::default());
+        feet.clear();
+        let places = [&ends.start[..], &ends.position];
+        for (ground, near) in self.grounds.iter().zip(&mut *near) {
+            ground.look(near, &self.surfaces[ground.body], places, end.interval, feet);
+        }
+        let count = ends.position.len();
+        ends.position.extend(feet.iter().map(|(foot, _)| foot));
+        ends.motion.extend(feet.iter().map(|(_, motion)| motion));
+        for (Ground { body, number, law, .. }, near) in self.grounds.iter().zip(near) {
+            ends.push(&near.touches, *law, [Side::Body(*body), Side::Obstacle(*number)], count as u32, end);
+        }
+        ends.position.truncate(count);
+        ends.motion.truncate(count);
+        ends.go_on(end);
     }
 
     /// Finds which surfaces may meet in a step.
@@ -74,7 +98,7 @@ impl Stage {
         /// So many pairs for each thread are looked at before they are resolved.
         const AHEAD: usize = 4;
         let Known { ends, pairs, shown, looks, .. } = known;
-        let seen = Seen { stage: self, start: shown, interval: Some(end.interval) };
+        let seen = self.seen(shown, Some(end.interval));
         crew.each(pairs, |_, pair| pair.go(&seen));
         looks.resize(if crew.threads() > 1 { AHEAD * crew.threads() } else { 1 }, Look::default());
         for kinds in [Kind::POINTS, Kind::EDGES] {

@@ -3,7 +3,6 @@
 use super::features::{Closest, Kind};
 use super::rule::{Term, Touch};
 use super::shown::Seen;
-use glam::DVec3;
 
 /// What touches of two surfaces in a step, in the order of features.
 #[derive(Clone, Debug, Default)]
@@ -35,7 +34,7 @@ impl Touches {
         [first, second]: [u32; 2],
         closest: &Closest,
     ) {
-        let [one, other] = of.map(|surface| &seen.stage.surfaces[surface]);
+        let [one, other] = of.map(|surface| &seen.surfaces[surface]);
         let begin = self.terms.len();
         let [mine, theirs] = closest.shares;
         let terms = &mut self.terms;
@@ -57,7 +56,7 @@ impl Touches {
         let normal = closest.way * (sign / distance);
         let there = if sign > 0.0 { closest.here - closest.way } else { closest.here };
         let out = normal * other.thickness;
-        let drag = seen.interval.map_or(DVec3::ZERO, |interval| seen.stage.drag(of[1], interval, there, out));
+        let drag = seen.drag(of[1], there, out);
         let terms = [begin, self.terms.len()].map(|at| at as u32);
         let keeps_law = closest.is_least || of[0] == of[1];
         self.all.push(Touch { normal, distance, keeps_law, drag, terms });
@@ -69,6 +68,7 @@ mod tests {
     use super::super::{Contacts, Surfaces};
     use super::*;
     use crate::body::Body;
+    use glam::DVec3;
     use std::sync::Arc;
 
     /// Two bodies whose points are a local minimum only nearly keep a part of the law, folds of one body all of it.
@@ -79,7 +79,7 @@ mod tests {
         let cube = Body::builder((0..8).map(corner).collect()).elements([&nodes[..]].into_iter().collect());
         let cube = Arc::new(cube.build().expect("a cube"));
         let both = Surfaces::new(&[Arc::clone(&cube), cube], &[], &Contacts::default());
-        let seen = Seen { stage: &both.stage, start: &[], interval: None };
+        let seen = both.stage.seen(&[], None);
         let keeps_law = |of: [usize; 2], is_least: bool| {
             let shares = [[0.5, 0.5, 0.0]; 2];
             let closest = Closest { here: DVec3::ZERO, way: DVec3::X, shares, rests: 0.0, is_least };

@@ -2,7 +2,8 @@
 
 use super::World;
 use crate::contact::{ContactPoint, Impulses, Reaction, Side, Source};
-use crate::diagnostics::{Diagnostic, Outside};
+use crate::diagnose::Outside;
+use crate::diagnostics::Diagnostic;
 use crate::dynamics::Dynamics;
 use crate::limit::SpeedLimit;
 use crate::state::{Runaway, State};
