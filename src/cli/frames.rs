@@ -176,9 +176,16 @@ mod tests {
             assert_eq!(all, frames);
         }
         assert_eq!("2/4".parse::<Shard>().unwrap().select(&[3, 5, 8, 9, 10, 12]), Ok(vec![5, 12]));
-        for (typed, message) in
-            [("1/0", "there is no shard 1 of 0; expected 1/1"), ("-1/4", "such as 2/4"), ("1/4/2", "such as 2/4")]
-        {
+        let error = "3/3".parse::<Shard>().unwrap().select(&[3, 5]).unwrap_err();
+        assert_eq!(error, "shard 3/3 of 2 frames is empty; expected at most 2 shards");
+        for (typed, message) in [
+            ("0/4", "there is no shard 0 of 4; expected 1/4 to 4/4"),
+            ("5/4", "there is no shard 5 of 4; expected 1/4 to 4/4"),
+            ("1/0", "there is no shard 1 of 0; expected 1/1"),
+            ("2", "such as 2/4"),
+            ("-1/4", "such as 2/4"),
+            ("1/4/2", "such as 2/4"),
+        ] {
             let error = typed.parse::<Shard>().unwrap_err();
             assert!(error.contains(message), "{typed}: {error}");
         }

@@ -330,6 +330,13 @@ mod tests {
     }
 
     #[test]
+    fn without_any_adapter_the_message_names_the_package() {
+        let message = choose(&AdapterChoice::Auto, &[]).unwrap_err().to_string();
+        assert!(message.contains("apt install mesa-vulkan-drivers"), "{message}");
+        assert!(message.contains("dnf install mesa-vulkan-drivers"), "{message}");
+    }
+
+    #[test]
     fn a_description_leaves_out_what_is_not_known() {
         assert_eq!(adapter("llvmpipe", "cpu").to_string(), "llvmpipe (cpu, vulkan, driver)");
     }
