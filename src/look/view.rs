@@ -126,6 +126,20 @@ impl View {
     pub(crate) fn coloured_bodies(&self) -> &[String] {
         if self.visible.surfaces && self.colour.is_none() { &self.bodies } else { &[] }
     }
+
+    /// Which overlays the key explains: displacements, loads, contacts, a ghost, and paths.
+    #[cfg(feature = "render")]
+    pub(crate) fn explained(&self) -> [bool; 5] {
+        let Visible { displacements, loads, contacts, .. } = self.visible;
+        [displacements, loads, contacts, self.ghost.is_some(), !self.paths.is_empty()]
+    }
+
+    /// Whether there is a key: of colours, lines or arrows.
+    #[cfg(feature = "render")]
+    pub(crate) fn has_key(&self) -> bool {
+        let has_more = || self.colour.is_some() || !self.coloured_bodies().is_empty();
+        self.labels.legend && (self.explained().contains(&true) || has_more())
+    }
 }
 
 impl Default for View {

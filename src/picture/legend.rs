@@ -5,7 +5,6 @@ use super::arrows;
 use super::caption::Writer;
 use super::chart::axis::Stretch;
 use super::chart::{Axis, Chart, PlotArea};
-use super::compose::overlay::explained;
 use super::ghost;
 use super::layout::steps::{BESIDE, BLOCK, MARGIN, NAME_ROW, SHORT, SMALL, STRONG, TEXT, TILE};
 use super::layout::tree::{self, Node};
@@ -87,13 +86,9 @@ pub(super) struct Legend {
 impl Legend {
     /// The key of a view with panels of a scale; `None` if there is nothing to explain.
     pub(super) fn of(view: &View, scale: Scale) -> Option<Self> {
-        let (overlays, bodies) = (explained(view) as f64, view.coloured_bodies().len().min(BODIES) as f64);
-        Self::is_wanted(view).then(|| Self::new(view.size, scale, overlays + BODY * bodies, view.colour.is_some()))
-    }
-
-    /// Whether there are colours, lines or arrows to explain.
-    pub(super) fn is_wanted(view: &View) -> bool {
-        view.labels.legend && (explained(view) > 0 || view.colour.is_some() || !view.coloured_bodies().is_empty())
+        let overlays = view.explained().into_iter().filter(|&is_explained| is_explained).count() as f64;
+        let bodies = view.coloured_bodies().len().min(BODIES) as f64;
+        view.has_key().then(|| Self::new(view.size, scale, overlays + BODY * bodies, view.colour.is_some()))
     }
 
     /// The key of a picture of a size (px) with panels of a scale, with a number of samples, and with or without a bar. A

@@ -1,9 +1,9 @@
 //! The bodies of a run: the data that all their pictures share. Runs of the same bodies share it, too.
 
-use super::overlay::bearers;
 use crate::look::BODIES;
+use crate::picture::arrows;
+use crate::picture::compose::edges::Edges;
 use crate::picture::compose::skin::Skin;
-use crate::picture::compose::wire::Edges;
 use crate::picture::ears::{Ears, bare_elements};
 use crate::picture::shadow;
 use crate::picture::shell::is_broken;
@@ -116,6 +116,15 @@ impl<'a> Bodies<'a> {
         let areas = whole.map(|(at, rest)| (&body.elements()[at as usize], rest));
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
+}
+
+/// The nodes with arrows: those on the surface, and those of elements without faces.
+fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
+    let of_bare = bare.iter().flat_map(|&element| &body.elements()[element]);
+    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    arrows::bearers(&nodes)
 }
 
 /// The signed area of a polygon in the xy-plane (m²).

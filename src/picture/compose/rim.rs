@@ -1,6 +1,6 @@
 //! The border of the turned-over part of a carried surface: triangles in several elements are cut where these meet.
 
-use super::carried::Fine;
+use super::fine::Fine;
 use crate::picture::Vertex;
 use crate::picture::field::NOWHERE;
 use crate::picture::narrow::narrow;

@@ -1,7 +1,7 @@
 //! The surface of bodies: faces of elements, and the fine surfaces that bodies carry in their place.
 
 use crate::picture::camera::Lens;
-use crate::picture::compose::carried::Fine;
+use crate::picture::compose::fine::Fine;
 use crate::picture::ears::Ears;
 use crate::sim::Assembly;
 use glam::DVec3;

@@ -1,6 +1,7 @@
 //! Lines instead of surfaces: the springs of a model, or the edges of the elements.
 
 use super::draft::Draft;
+use super::edges::Edges;
 use crate::colour::{Colour, mixed};
 use crate::look::ColourScale;
 use crate::picture::field::{self, NOWHERE};
@@ -11,7 +12,6 @@ use crate::picture::shell::is_broken;
 use crate::picture::{Bead, Second, Stroke};
 use crate::sim::Body;
 use glam::DVec3;
-use std::borrow::Cow;
 
 /// Width of springs, of edges, of edges of turned-over elements and of elements without faces that a field colours (px
 /// in the reference picture).
@@ -37,42 +37,6 @@ const STRAINED_HAZE: f64 = 0.8;
 const STRAIN_STEPS: f64 = 8.0;
 /// A line between two places on a scale farther apart than this is divided, so that it shows the colours between.
 const LONGEST_STEP: f64 = 0.05;
-
-/// The edges of elements, once for all frames.
-#[derive(Debug, Default)]
-pub(super) struct Edges {
-    /// Each edge once.
-    pub(super) all: Vec<[u32; 2]>,
-    /// The edges of each element, and the nodes of elements without edges.
-    of_elements: Vec<Vec<[u32; 2]>>,
-}
-
-impl Edges {
-    /// The edges of all elements of a body.
-    pub(super) fn new(body: &Body) -> Self {
-        let of_elements: Vec<_> = (0..body.elements().len()).map(|element| body.topology().edges_of(element)).collect();
-        let all = each_once(of_elements.iter());
-        Self { all, of_elements }
-    }
-
-    /// Each edge of the elements that are not broken once.
-    fn of_whole(&self, broken: &[bool]) -> Cow<'_, [[u32; 2]]> {
-        if !broken.contains(&true) {
-            return Cow::Borrowed(&self.all);
-        }
-        let whole = self.of_elements.iter().zip(0..).filter(|&(_, element)| !is_broken(broken, element));
-        Cow::Owned(each_once(whole.map(|(edges, _)| edges)))
-    }
-}
-
-/// The edges of elements, each once.
-fn each_once<'a>(of_elements: impl Iterator<Item = &'a Vec<[u32; 2]>>) -> Vec<[u32; 2]> {
-    let mut all: Vec<_> = of_elements.flatten().copied().collect();
-    all.iter_mut().for_each(|edge| edge.sort_unstable());
-    all.sort_unstable();
-    all.dedup();
-    all
-}
 
 /// A line, and the distance of its middle from the eye (m).
 type Placed = (f64, Stroke);

@@ -17,19 +17,23 @@
 //! caption, in frames
 //! ```
 
+mod scale;
 pub(super) mod steps;
 pub(super) mod tree;
+mod words;
 
-use super::legend::Legend;
-use crate::look::{Labels, Plot, View, print};
-use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, NEAR, ROW, SHORT, SMALL, TALL_ROW, TILE};
+pub(crate) use scale::Rectangle;
+pub(super) use scale::{ASCENT, SMALLEST_TYPE, Scale};
+pub(super) use words::{WordPlaces, WordsShown, clear_of_words, rooms};
+
+use crate::look::{View, print};
+use scale::{LINE, unit};
+use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, ROW, SHORT, TILE};
 use tree::{Node, Place, Solved};
+use words::written;
 
-/// Smaller type cannot be read in any picture and is left out (px).
-pub(super) const SMALLEST_TYPE: f64 = 5.0;
-/// The parts of a picture that panels keep without and with a chart, and the part of a panel that its body keeps.
+/// The parts of a picture that panels keep without and with a chart.
 const PANELS: [f64; 2] = [0.45, 0.36];
-const BODY: f64 = 0.56;
 /// The largest part of a picture for a chart.
 const CHART_SHARE: f64 = 0.3;
 /// The largest part of the height of a page for a chart with an axis of its own.
@@ -37,12 +41,6 @@ const OWN_SHARE: f64 = 0.4;
 /// The most lines of titles, and the most names at the ends of curves that make a chart higher.
 const MOST_LINES: usize = 4;
 const MOST_NAMES: usize = 10;
-/// The least distance of lines, and the height of letters, in sizes of their type.
-const LINE: f64 = 1.25;
-pub(super) const ASCENT: f64 = 0.77;
-
-/// A rectangle: left, top, width, height (px).
-pub(crate) type Rectangle = [u32; 4];
 
 /// The boxes of a page and of its panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -307,244 +305,6 @@ pub(super) fn baselines(page: &Solved<Part>, part: Part, scale: Scale) -> impl I
 pub(super) fn whole([left, top, width, height]: Place) -> Rectangle {
     let [left, top, right, bottom] = [left, top, left + width, top + height].map(|at| at.round().max(0.0) as u32);
     [left, top, right - left, bottom - top]
-}
-
-/// Pixels of the picture of a view per pixel of the reference picture.
-fn unit(view: &View) -> f64 {
-    let [width, height] = view.size.map(|length| f64::from(length.max(1)));
-    // Panels that arrange themselves stand side by side in a wide picture.
-    let columns = view.columns.unwrap_or(if width < height { 1 } else { 2 }).clamp(1, 2) as u32;
-    let usual = print::unit(view.size, [(width / f64::from(columns)) as u32, u32::MAX]);
-    // In a tall picture type follows the area: the rows of a column as wide would have few words.
-    const TALL: f64 = 1.14e-3;
-    usual.min(TALL * (width * height).sqrt())
-}
-
-/// The text in a panel.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct WordsShown {
-    pub(super) labels: Labels,
-    /// Whether there is a second line, with the model and the start of the clock.
-    pub(super) second: bool,
-    /// Whether there is a line for events.
-    pub(super) events: bool,
-    /// The heights above and below the body (px).
-    rooms: [f64; 2],
-    /// The rows without room.
-    pub(super) left_out: Vec<Part>,
-}
-
-/// The text in a panel of a height (px), with `unit` pixels per pixel of the reference picture. If not all of it fits
-/// beside the body, first the events are left out, then the second line, then the text below.
-pub(super) fn written(view: &View, height: f64, unit: f64) -> WordsShown {
-    let scale = Scale::at(unit).within(view);
-    let Labels { letters, name, model, clock, count, number, scale_bar, .. } = view.labels;
-    let (second, events) = (model || clock, view.charts.iter().any(Plot::is_over_time));
-    let [has_heading, has_numbers] = [letters || name || second || events, count || number || scale_bar];
-    let edge = |end: usize, has_words| Node::new(Part::Edge, if has_words { scale.edges[end] } else { ROW } * unit);
-    let row = |part, height: f64, rank: u8| Node::new(part, height).rank(rank);
-    let [of_name, of_second, of_events] = scale.rows();
-    let nodes: Vec<_> = std::iter::once(edge(0, has_heading))
-        .chain(has_heading.then(|| row(Part::Name, of_name, 3)))
-        .chain(second.then(|| row(Part::Second, of_second, 1)))
-        .chain(events.then(|| row(Part::Events, of_events, 0)))
-        .chain([Node::new(Part::Body, BODY * height).stretched()])
-        .chain(has_numbers.then(|| row(Part::Numbers, scale.numbers().iter().sum(), 2)))
-        .chain([edge(1, has_numbers)])
-        .collect();
-    let mut solved = tree::column(&nodes, [0.0, 0.0, 0.0, height]);
-    // Rows that cannot be read stay empty, and rows below a name without room.
-    let sizes = [(Part::Name, scale.title()), (Part::Second, scale.caption()), (Part::Events, scale.caption())];
-    let sizes = sizes.into_iter().chain([(Part::Numbers, scale.title())]);
-    let nameless = |part| solved.get(Part::Name).is_none() && part != Part::Numbers;
-    let empty = sizes.filter(|&(part, size)| solved.get(part).is_some() && (nameless(part) || !Scale::legible(size)));
-    solved.left_out.extend(empty.map(|(part, _)| part).collect::<Vec<_>>());
-    let has = |part| solved.get(part).is_some() && !solved.left_out.contains(&part);
-    let [above, room] = solved.get(Part::Body).map_or([0.0, height], |[_, top, _, height]| [top, height]);
-    let (names, numbers) = (has(Part::Name), has(Part::Numbers));
-    // A row keeps its place where the row above it has nothing to say.
-    WordsShown {
-        labels: Labels {
-            letters: letters && names,
-            name: name && names,
-            model: model && has(Part::Second),
-            clock: clock && names,
-            count: count && numbers,
-            number: number && numbers,
-            // A count says something without the small words below it.
-            scale_bar: scale_bar && numbers && Scale::legible(scale.caption()),
-            ..view.labels
-        },
-        second: has(Part::Second),
-        events: has(Part::Events),
-        rooms: [above, height - above - room],
-        left_out: solved.left_out,
-    }
-}
-
-/// The heights for words above and below the body (px in the reference picture), in a panel of a height (px), where the
-/// pixels of the reference picture have a size of `unit` pixels.
-pub(super) fn rooms(view: &View, height: f64, unit: f64) -> [f64; 2] {
-    written(view, height, unit).rooms.map(|room| room / unit)
-}
-
-/// Sizes of type and lines of one picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
-    /// Pixels per pixel of the reference picture.
-    pub(super) unit: f64,
-    /// The size of type, with its rows, relative to the usual one.
-    type_factor: f64,
-    /// The smallest type (px).
-    least: f64,
-    /// The heights above and below the words of a panel (px in the reference picture).
-    pub(super) edges: [f64; 2],
-}
-
-impl Scale {
-    /// The sizes of the reference picture.
-    pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, least: 0.0, edges: [BESIDE; 2] };
-
-    /// The sizes of a picture with a number of pixels per pixel of the reference picture.
-    pub(super) fn at(unit: f64) -> Self {
-        Self { unit, ..Self::REFERENCE }
-    }
-
-    /// The sizes with another unit.
-    pub(super) fn with_unit(self, unit: f64) -> Self {
-        Self { unit, ..self }
-    }
-
-    /// The sizes with the type of a scene.
-    pub(super) fn with(self, view: &View) -> Self {
-        Self { type_factor: view.look.text_scale, ..self }
-    }
-
-    /// The sizes for a part of the picture of a scene, whose type is not smaller than the picture's smallest type.
-    fn within(self, view: &View) -> Self {
-        // The outermost words keep the margins of the picture.
-        let above = if view.title.is_empty() { MARGIN } else { BESIDE };
-        let has_parts_below = !view.charts.is_empty() || Legend::is_wanted(view) || !view.caption.is_empty();
-        let below = if has_parts_below { BESIDE } else { SHORT + BESIDE };
-        Self { least: SMALL * unit(view) * view.look.text_scale.min(1.0), edges: [above, below], ..self.with(view) }
-    }
-
-    /// Pixels per pixel of the reference picture, for type and for objects in its rows.
-    pub(super) fn type_unit(self) -> f64 {
-        self.unit * self.type_factor
-    }
-
-    /// The same for names, clocks and counts, which are larger than other type. Where that is large, as in small pictures for print, they grow
-    /// less.
-    fn name_unit(self) -> f64 {
-        /// The factor of type up to which names grow with it, and their least size relative to larger type.
-        const GROWN: f64 = 1.5;
-        const LARGER: f64 = 1.25;
-        self.type_unit() * (GROWN / self.type_factor).clamp(LARGER * steps::TEXT / steps::NAME, 1.0)
-    }
-
-    /// The heights of the rows of a name, a second line and events in a panel (px).
-    fn rows(self) -> [f64; 3] {
-        let row = |height: f64, size: f64| height.max(LINE * size);
-        let name = row(NAME_ROW * self.name_unit(), self.title());
-        let [second, events] = [ROW, TALL_ROW].map(|step| row(step * self.type_unit(), self.caption()));
-        [name, second, events]
-    }
-
-    /// The heights of the rows of a count and of the words below it (px).
-    fn numbers(self) -> [f64; 2] {
-        let words = (SHORT * self.type_unit()).max(LINE * self.caption());
-        [ASCENT * self.title() + 0.5 * self.caption(), words]
-    }
-
-    /// Size of the title above all panels (px).
-    pub(super) fn heading(self) -> f64 {
-        1.16 * self.title()
-    }
-
-    /// Size of names, clock and count (px).
-    pub(super) fn title(self) -> f64 {
-        (steps::NAME * self.name_unit()).max(self.least)
-    }
-
-    /// Size of all other type (px).
-    pub(super) fn caption(self) -> f64 {
-        (steps::TEXT * self.type_unit()).max(self.least)
-    }
-
-    /// Size of numbers in charts and in rings (px).
-    pub(super) fn small(self) -> f64 {
-        (SMALL * self.type_unit()).max(self.least)
-    }
-
-    /// The margin around and inside each panel (px).
-    pub(super) fn margin(self) -> f64 {
-        MARGIN * self.unit
-    }
-
-    /// The gap between adjacent parts (px).
-    pub(super) fn gap(self) -> f64 {
-        GAP * self.unit
-    }
-
-    /// Whether type of `size` (px) can be read.
-    pub(super) fn legible(size: f64) -> bool {
-        size >= SMALLEST_TYPE
-    }
-
-    /// The thickness of lines relative to the reference picture. It is at least that at a third of the size, below
-    /// which lines would only be fainter.
-    pub(super) fn line(self) -> f64 {
-        self.unit.max(0.35)
-    }
-}
-
-/// The places of the words in a panel (px).
-pub(super) struct WordPlaces {
-    /// The left and the right end of their room.
-    pub(super) left: f64,
-    pub(super) right: f64,
-    // Baselines.
-    pub(super) title: f64,
-    pub(super) second: f64,
-    pub(super) events: f64,
-    pub(super) count: f64,
-    pub(super) caption: f64,
-}
-
-impl WordPlaces {
-    pub(super) fn new(scale: Scale, panel: Rectangle) -> Self {
-        let ([name, second, _], [count, below]) = (scale.rows(), scale.numbers());
-        let [left, start, width, height] = panel.map(f64::from);
-        let [top, bottom] = scale.edges.map(|edge| edge * scale.unit);
-        let bottom = height - bottom;
-        let [large, small] = [scale.title(), scale.caption()].map(|size| ASCENT * size);
-        Self {
-            left: left + scale.margin(),
-            right: left + width - scale.margin(),
-            title: start + (top + large),
-            second: start + (top + name + small),
-            events: start + (top + name + second + small),
-            count: start + (bottom - below - count + large),
-            caption: start + (bottom - below + small),
-        }
-    }
-
-    /// The width of their room.
-    pub(super) fn width(&self) -> f64 {
-        (self.right - self.left).max(0.0)
-    }
-}
-
-/// The part of a panel of a view between its lines of text, inside its margins.
-pub(super) fn clear_of_words(panel: Rectangle, view: &View, scale: Scale) -> Rectangle {
-    let [left, top, width, height] = panel;
-    let [above, below] = written(view, f64::from(height), scale.unit).rooms;
-    let inside = |at: f64, length: u32| at.clamp(0.0, f64::from(length)) as u32;
-    let side = inside(scale.margin(), width / 2);
-    let above = inside(above + NEAR * scale.unit, height);
-    let below = inside(f64::from(height) - below - GAP * scale.unit, height).max(above);
-    [left + side, top + above, width - 2 * side, below - above]
 }
 
 #[cfg(test)]

@@ -4,11 +4,9 @@ use super::KeyPlace;
 use crate::picture::compose::Composer;
 use crate::picture::compose::body::node_radius;
 use crate::picture::compose::draft::Draft;
-use crate::picture::compose::skin::Skin;
 use crate::picture::legend::Sample;
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
-use crate::sim::Body;
 
 /// An arrow with its length in words.
 pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
@@ -47,13 +45,4 @@ impl Draft<'_> {
         skin.nodes.iter().for_each(|&node| visible[node as usize] = on_skin[node as usize]);
         bearers.iter().map(|&node| (node, visible[node as usize])).collect()
     }
-}
-
-/// The nodes with arrows: those on the surface, and those of elements without faces.
-pub(in crate::picture::compose) fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
-    let of_bare = bare.iter().flat_map(|&element| &body.elements()[element]);
-    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    arrows::bearers(&nodes)
 }

@@ -1,5 +1,5 @@
 //! Overlays: marks and curves over the bodies of panels, with their samples in the key. A new one is one file here, one line
-//! in [`MARKS`] or [`CURVES`], one in [`EXPLAINED`] if it has samples, and its key in [`View`].
+//! in [`MARKS`] or [`CURVES`], one in [`SAMPLES`] and [`View::explained`] if it has samples, and its key in [`View`].
 
 mod contacts;
 mod displacements;
@@ -8,8 +8,6 @@ mod grips;
 mod height;
 mod loads;
 mod paths;
-
-pub(super) use displacements::bearers;
 
 use super::Composer;
 use super::draft::Draft;
@@ -30,17 +28,12 @@ pub(super) const MARKS: [Draw; 5] = [height::draw, grips::draw, displacements::d
 /// The overlays above them.
 pub(super) const CURVES: [Draw; 2] = [ghost::draw, paths::draw];
 
-/// Whether the key of a view explains an overlay, and its samples there.
-type Explained = (fn(&View) -> bool, for<'c> fn(&'c Composer<'_>, &KeyPlace<'_>) -> Vec<Sample<'c>>);
+/// The samples of an overlay in a key.
+type Samples = for<'c> fn(&'c Composer<'_>, &KeyPlace<'_>) -> Vec<Sample<'c>>;
 
-/// The overlays that keys explain, in the order of their samples.
-const EXPLAINED: [Explained; 5] = [
-    (|view| view.visible.displacements, displacements::samples),
-    (|view| view.visible.loads, loads::samples),
-    (|view| view.visible.contacts, contacts::samples),
-    (|view| view.ghost.is_some(), ghost::samples),
-    (|view| !view.paths.is_empty(), paths::samples),
-];
+/// Those of the overlays that keys explain, in the order of [`View::explained`].
+const SAMPLES: [Samples; 5] =
+    [displacements::samples, loads::samples, contacts::samples, ghost::samples, paths::samples];
 
 /// A key, and the first panel that it explains.
 pub(in crate::picture) struct KeyPlace<'a> {
@@ -92,19 +85,10 @@ impl Draft<'_> {
     }
 }
 
-/// The overlays that the key of a view explains.
-fn explained_in(view: &View) -> impl Iterator<Item = Explained> {
-    EXPLAINED.into_iter().filter(|(is_explained, _)| is_explained(view))
-}
-
-/// The number of overlays that the key of a view explains.
-pub(in crate::picture) fn explained(view: &View) -> usize {
-    explained_in(view).count()
-}
-
 /// The samples of overlays in a key.
 pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> impl Iterator<Item = Sample<'c>> {
-    explained_in(&composer.scene.view).flat_map(move |(_, samples)| samples(composer, place))
+    let explained = SAMPLES.into_iter().zip(composer.scene.view.explained()).filter(|&(_, is_explained)| is_explained);
+    explained.flat_map(move |(samples, _)| samples(composer, place))
 }
 
 /// Whether overlays of a view have the colours of runs.
