@@ -169,6 +169,25 @@ fn loads_that_rise_in_a_scene_without_duration() {
 }
 
 #[test]
+fn loads_on_nodes_that_are_all_held() {
+    let of = |hold: &str, load: &str| {
+        let text = format!("{CUBE}model = {{ kind = 'shape-based', young = 1e5 }}\n");
+        warnings(&format!("{text}[[hold]]\nnodes = 'top'\n{hold}\n[[load]]\nforce = [1, 0, 0]\n{load}\n"))
+    };
+    let told = vec![(
+        "`load[0]` moves nothing: all nodes on which it acts are held".to_owned(),
+        "choose other nodes or faces, or remove it".to_owned(),
+    )];
+    assert_eq!(of("", "nodes = 'top'"), told);
+    assert_eq!(of("", "faces = 'top'"), told);
+    assert_eq!(of("until = 0.5", "nodes = 'top'\nuntil = 0.5"), told);
+    // What is let go, grabbed later, or held in part moves.
+    assert_eq!(of("until = 0.5", "nodes = 'top'"), []);
+    assert_eq!(of("from = 0.5", "nodes = 'top'"), []);
+    assert_eq!(of("", ""), []);
+}
+
+#[test]
 fn rows_of_frames_that_end_no_interval() {
     let of = |every: &str, charts: &str| {
         let text = CUBE.replace("duration = 1", &format!("duration = 1\nframes_per_second = 60\nevery = {every}"));

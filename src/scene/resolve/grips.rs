@@ -6,6 +6,7 @@ use crate::reading::collector::Here;
 use crate::scene::SceneBody;
 use crate::sim::{Assembly, Grip, Motion};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// A constraint: its place in the scene, nodes of its bodies, when they are held, and how they move.
 #[derive(Debug)]
@@ -21,6 +22,12 @@ pub(super) struct SceneGrip<'s> {
 }
 
 impl SceneGrip<'_> {
+    /// Whether it holds a node of a body of the scene as long as an interval lasts (s).
+    pub(super) fn holds(&self, (body, node): (usize, u32), during: &Range<f64>) -> bool {
+        let covers = self.from <= during.start && during.end <= self.until;
+        covers && self.nodes[body].binary_search(&node).is_ok()
+    }
+
     /// The constraints in a run of some of the bodies: one for each body that has nodes in it. So bodies do not depend on each
     /// other: gripped nodes turn about their own centre, and a body moves as it does alone, to the last bit.
     pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = (Grip, String)> {

@@ -1,6 +1,7 @@
 //! Loads: on which nodes and faces of which bodies they act, and when.
 
 use super::faces::{Faces, outside, surface};
+use super::grips::SceneGrip;
 use super::nodes::select;
 use super::{Typed, vector};
 use crate::reading::collector::Here;
@@ -12,7 +13,8 @@ use glam::DVec3;
 
 /// A load: what it does, when, and on which parts of each body of the scene.
 #[derive(Debug)]
-pub(super) struct SceneLoad {
+pub(super) struct SceneLoad<'s> {
+    here: Here<'s>,
     kind: Kind,
     course: Course,
     on: Vec<Option<Borne>>,
@@ -25,7 +27,7 @@ struct Borne {
     faces: Option<Faces>,
 }
 
-impl SceneLoad {
+impl SceneLoad<'_> {
     /// The loads in a run of some of the bodies.
     pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = Loading> {
         of.iter().enumerate().filter_map(|(at, &body)| {
@@ -36,12 +38,12 @@ impl SceneLoad {
 }
 
 /// The loads, or `None` after reporting every mistake in them.
-pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Vec<SceneLoad>> {
-    let load = |(here, typed)| {
-        let reading = Reading { typed, here, bodies };
+pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec<SceneLoad<'s>>> {
+    let load = |(here, typed): (Here<'s>, _)| {
+        let reading = Reading { typed, here: here.clone(), bodies };
         let (course, kind) = (reading.course(), reading.kind());
         let kind = kind?;
-        Some(SceneLoad { on: reading.borne(&kind)?, kind, course: course? })
+        Some(SceneLoad { on: reading.borne(&kind)?, kind, course: course?, here })
     };
     let all: Vec<_> = scene.each("load", &scene.file.load).filter_map(load).collect();
     (all.len() == scene.file.load.len()).then_some(all)
@@ -54,6 +56,18 @@ pub(super) fn check_steps(scene: &Typed<'_>, step: f64) {
         if let Some(lasts) = lasts.filter(|lasts| (0.0..step).contains(lasts)) {
             let message = format!("`{here}` lasts {lasts:.3e} s, but a time step takes {step:.3e} s");
             here.to("until").wrong(message, "make it longer, or it does nothing");
+        }
+    }
+}
+
+/// Warns of loads whose nodes are held as long as they act: what holds the nodes carries them, and nothing moves.
+pub(super) fn warn_of_held(loads: &[SceneLoad<'_>], grips: &[SceneGrip<'_>]) {
+    for SceneLoad { here, course, on, .. } in loads {
+        let on = on.iter().enumerate().filter_map(|(body, borne)| Some((body, borne.as_ref()?)));
+        let mut nodes = on.flat_map(|(body, borne)| borne.weights.iter().map(move |&(node, _)| (body, node)));
+        if nodes.all(|node| grips.iter().any(|grip| grip.holds(node, &course.during))) {
+            let message = format!("`{here}` moves nothing: all nodes on which it acts are held");
+            here.warn(message, "choose other nodes or faces, or remove it");
         }
     }
 }

@@ -194,6 +194,7 @@ impl<'a> Typed<'a> {
         choice::check_names(["run", "runs"], self.each("run", &file.run).map(|(here, run)| (here, Some(&*run.name))));
         let runs = bodies.as_ref().and_then(|bodies| {
             let (grips, loads) = (grips.as_deref().unwrap_or_default(), loads.as_deref().unwrap_or_default());
+            loads::warn_of_held(loads, grips);
             runs::Resolved { scene: self, choices: &choices, bodies, grips, loads }.runs(recordings)
         });
         let (runs, own) = runs.unzip();

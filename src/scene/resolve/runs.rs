@@ -63,7 +63,7 @@ pub(super) struct Resolved<'a> {
     /// The bodies of the scene.
     pub(super) bodies: &'a [SceneBody],
     pub(super) grips: &'a [SceneGrip<'a>],
-    pub(super) loads: &'a [SceneLoad],
+    pub(super) loads: &'a [SceneLoad<'a>],
 }
 
 impl Resolved<'_> {
