@@ -20,6 +20,9 @@ const SHAPE: [f64; 4] = [1.235, 0.2, 0.247, 0.62];
 const OUTLINED: [f64; 2] = [0.16, 0.75];
 /// Width of the head of a long arrow (px in the reference picture).
 const HEAD: f64 = GAP;
+/// Arrows up to this length go with their body beyond the room for arrows (px in the reference picture): cut, they would look like
+/// smaller ones.
+pub(super) const SHORT: f64 = 4.0 * HEAD;
 /// Small elements get smaller arrows, down to this part of their size; not smaller than the least size, relative to the
 /// reference picture, which could not be seen.
 const SMALLEST: f64 = 0.36;
@@ -65,13 +68,23 @@ pub(super) fn bare(ends: [DVec2; 2], size: f64, colour: Colour) -> Item {
     Item::part("arrow", [Item::fill(Path::polygon(&corners.map(point)), colour)])
 }
 
-/// A curve through pixels whose last pieces, fewer than all, are the head of an arrow, for type of a unit and arrows of a size.
-pub(super) fn bent(pixels: &[DVec2], head: usize, [unit, size]: [f64; 2], palette: &Palette) -> [Item; 2] {
-    let (curve, last) = pixels.split_at(pixels.len() - head);
-    let curve: Vec<_> = curve.iter().chain(&last[..head / 2]).map(|pixel| pixel.to_array()).collect();
-    let ends = [pixels[pixels.len() - 1 - head], pixels[pixels.len() - 1]];
-    let line = Item::curve(&curve, STRONG * unit, &[], palette.text);
-    [line, arrow(ends, size, palette.text, palette.background)]
+/// A curve through pixels, two or more, that ends with the head of an arrow, for type of a unit and arrows of a size.
+pub(super) fn bent(pixels: &[DVec2], [unit, size]: [f64; 2], palette: &Palette) -> Item {
+    let (tip, long) = (pixels[pixels.len() - 1], SHAPE[0] * HEAD * size);
+    // A curve that is short in the picture, as from its side, has a shorter head, of up to half of its pieces.
+    let far = |&at: &usize| pixels[at].distance(tip) >= long;
+    let joint = (pixels.len() / 2..pixels.len()).rev().find(far).unwrap_or(pixels.len() / 2);
+    let way = (tip - pixels[joint]) / SHAPE[3];
+    let (corners, part) = outline([tip - way, tip], HEAD * size);
+    let head = Path::polygon(&corners[1..6].iter().copied().map(point).collect::<Vec<_>>());
+    let curve: Vec<_> =
+        pixels[..=joint].iter().chain([&corners[1].midpoint(corners[5])]).map(DVec2::to_array).collect();
+    let (line, rim) = (STRONG * unit, 2.0 * HALO * HEAD * size * part.max(0.5));
+    // All of the halo lies below: that of the head would cut the line.
+    let halo = (palette.background, HALO_ALPHA);
+    let below = [Item::curve(&curve, line + rim, &[], halo), Item::stroke(head.clone(), Pen::solid(narrow(rim)), halo)];
+    let above = [Item::curve(&curve, line, &[], palette.text), Item::fill(head, palette.text)];
+    Item::part("arrow", below.into_iter().chain(above).collect::<Vec<_>>())
 }
 
 /// An arrow for comparison with others: faintly filled, with an outline.
@@ -106,17 +119,21 @@ fn outline([from, to]: [DVec2; 2], width: f64) -> ([DVec2; 7], f64) {
     ([a, b, c, to, e, f, g], part)
 }
 
-/// The part of an arrow inside a room, and its opacity, which is less than 1 where it is hardly longer than the shortest
-/// (px). Long arrows are cut rather than left out, or the remaining small ones would mislead.
-pub(super) fn inside(ends: [DVec2; 2], room: Rectangle, shortest: f64) -> Option<([DVec2; 2], f64)> {
-    let ends = cut(ends, sides(room.map(f64::from)))?;
+/// The part of an arrow of a size inside a room, and its opacity, which is less than 1 where it is hardly longer than the shortest
+/// (px). Long arrows are cut rather than left out, or the remaining small ones would mislead. One that hardly leaves the room is whole: a
+/// break would hide more of it.
+pub(super) fn inside(whole: [DVec2; 2], room: Rectangle, size: f64, shortest: f64) -> Option<([DVec2; 2], f64)> {
+    let length = |[from, to]: [DVec2; 2]| from.distance(to);
+    let ends = cut(whole, sides(room.map(f64::from)))?;
+    let ends = if length(whole) - length(ends) < HEAD * size { whole } else { ends };
     let longer = ends[0].distance(ends[1]) / shortest - 1.0;
     (longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
 }
 
-/// A break in the shaft of an arrow that is longer than it is drawn: two slanted strokes with the ground between them.
+/// A break in the shaft of an arrow that is longer than it is drawn: two slanted strokes with the ground between them, which leave
+/// most of a short arrow to be seen.
 pub(super) fn broken([from, to]: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 3] {
-    let along = (to - from).normalize_or(DVec2::X) * HEAD * size;
+    let along = (to - from).normalize_or(DVec2::X) * (HEAD * size).min(0.3 * from.distance(to));
     let (slanted, middle) = (0.75 * along.perp() + 0.3 * along, from.lerp(to, 0.4));
     let [first, second] = [-0.22, 0.22].map(|share| middle + share * along);
     let corners = [first - slanted, first + slanted, second + slanted, second - slanted];
@@ -136,6 +153,13 @@ mod tests {
         assert_eq!((corners[3], part), (to, 1.0));
         assert!((corners[0].midpoint(corners[6]) - from).length() < 1e-9);
         assert!(corners.iter().all(|at| (to - from).normalize().dot(*at - from) < 50.0 + 1e-9));
+    }
+
+    #[test]
+    fn an_arrow_that_hardly_leaves_its_room_is_whole() {
+        let ends = |to: f64| [DVec2::new(50.0, 50.0), DVec2::new(to, 50.0)];
+        let of = |to: f64| inside(ends(to), [0, 0, 100, 100], 1.0, 1.0).map(|(ends, _)| ends[1].x);
+        assert_eq!([90.0, 110.0, 150.0].map(of), [Some(90.0), Some(110.0), Some(100.0)]);
     }
 
     #[test]

@@ -21,10 +21,9 @@ use std::f64::consts::TAU;
 const BAR: f64 = 1.5;
 /// The least width of the sample of a body with its name, in those of others.
 const BODY: f64 = 0.5;
-/// The sample of a torque: where its arc begins, below at the left, and its length, in turns; its pieces, and those of its head.
+/// The sample of a torque: where its arc begins, below at the left, and its length, in turns; and its pieces.
 const ARC: [f64; 2] = [0.4, 0.75];
 const PIECES: u32 = 24;
-const HEAD: usize = 8;
 /// The most ticks of a bar.
 pub(super) const MOST_TICKS: usize = 5;
 
@@ -156,7 +155,7 @@ impl Legend {
                 let radius = 0.5 * SHORT * unit;
                 let at = |turn: f64| DVec2::new(left + radius, middle) + radius * DVec2::from_angle(turn * TAU);
                 let pixels = (0..=PIECES).map(|piece| at(ARC[0] + ARC[1] * f64::from(piece) / f64::from(PIECES)));
-                writer.marks.extend(arrows::bent(&pixels.collect::<Vec<_>>(), HEAD, [unit, size], palette));
+                writer.marks.push(arrows::bent(&pixels.collect::<Vec<_>>(), [unit, size], palette));
                 length = 2.0 * radius;
             }
             SampleKind::Ghost(colour) => {

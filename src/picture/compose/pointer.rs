@@ -41,6 +41,6 @@ impl Draft<'_> {
         let ends = if arriving { [-gap - length, -gap] } else { [gap, gap + length] };
         let ends = ends.map(|at| from + at * along);
         let arrow = |(ends, opacity)| arrow(ends, unit, palette.pointer, palette.background).faded(opacity);
-        marks.extend(inside(ends, room, BESIDE * unit).and_then(arrow));
+        marks.extend(inside(ends, room, unit, BESIDE * unit).and_then(arrow));
     }
 }

@@ -17,16 +17,17 @@ use std::ops::Range;
 const LENGTH: [f64; 2] = [0.22, 0.12];
 /// Of a whole torque: the radius of its arc in distances of the farthest node from the axis, and the part of a turn.
 const ARC: [f64; 2] = [1.25, 0.75];
-/// Pieces of an arc, and of its head.
+/// Pieces of an arc.
 const PIECES: usize = 32;
-const HEAD: usize = 2;
 
 /// An arrow with its force or its pressure in words, and an arc with the largest torque.
 pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
     let pixels = place.pixels_a_metre(composer);
     let room = place.legend.arrow_length() / pixels;
     let scales = Scales::new(composer.scene);
-    let [force, pressure] = [scales.newton, scales.pascal].map(|metres| (metres > 0.0).then(|| room / metres));
+    // Not larger than any load that there is.
+    let shown = |metres: f64, largest: f64| (metres > 0.0).then(|| (room / metres).min(largest));
+    let [force, pressure] = [shown(scales.newton, scales.largest[0]), shown(scales.pascal, scales.largest[1])];
     let straight = match (force, pressure) {
         (Some(force), _) => Some((number::round_below(force), scales.newton, "N")),
         (None, Some(pressure)) => Some((number::round_below(pressure), scales.pascal, scales.unit)),
@@ -86,7 +87,7 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
                 let (middle, axis) = (draft.middle_of(load), torque.normalize_or_zero());
                 let nodes = load.nodes().unwrap_or_default().iter().map(|&node| draft.position[node as usize]);
                 let farthest = nodes.fold(0.0, |far: f64, at| far.max((at - middle).cross(axis).length()));
-                found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]).into_iter().flatten());
+                found.extend(draft.arc(middle, axis, [ARC[0] * farthest, turn]));
             }
         }
     }
@@ -98,6 +99,8 @@ struct Scales {
     /// The length of an arrow (m) for each newton, and for each pascal; zero without such a load.
     newton: f64,
     pascal: f64,
+    /// The largest force (N), and the largest pressure.
+    largest: [f64; 2],
     /// The unit of pressures.
     unit: &'static str,
     /// The largest torque (N m).
@@ -127,7 +130,7 @@ impl Scales {
             _ => scale([LENGTH[0], force]),
         };
         let unit = if scene.dimension() == Dimension::Plane { "N/m" } else { "Pa" };
-        Self { newton, pascal: scale([LENGTH[1], pressure]), unit, torque }
+        Self { newton, pascal: scale([LENGTH[1], pressure]), largest: [force, pressure], unit, torque }
     }
 }
 
@@ -158,13 +161,12 @@ impl Draft<'_> {
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.
-    fn arc(&self, middle: DVec3, axis: DVec3, [radius, angle]: [f64; 2]) -> Option<[(f64, Item); 2]> {
+    fn arc(&self, middle: DVec3, axis: DVec3, [radius, angle]: [f64; 2]) -> Option<(f64, Item)> {
         let start = axis.any_orthonormal_vector() * radius;
         let at = |piece: usize| middle + DQuat::from_axis_angle(axis, angle * piece as f64 / PIECES as f64) * start;
         let pixels: Vec<_> = (0..=PIECES).map(|piece| self.pixel(at(piece))).collect::<Option<_>>()?;
         let size = arrows::size(self.element, self.scale.unit);
         let (_, depth) = self.lens.project(middle)?;
-        let bent = arrows::bent(&pixels, HEAD, [self.scale.unit, size], &self.composer.palette);
-        Some(bent.map(|item| (depth, item)))
+        Some((depth, arrows::bent(&pixels, [self.scale.unit, size], &self.composer.palette)))
     }
 }

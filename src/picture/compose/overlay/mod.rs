@@ -71,7 +71,8 @@ impl Draft<'_> {
         let (to, depth) = self.lens.project(end)?;
         let shortest = (RING * size).max(FREE).max(shortest);
         let whole = [self.pixel(start)?, to.into()];
-        let (ends, part) = arrows::inside(whole, self.clear, shortest)?;
+        let is_short = whole[0].distance(whole[1]) < arrows::SHORT * size;
+        let (ends, part) = arrows::inside(whole, if is_short { self.viewport } else { self.clear }, size, shortest)?;
         let palette = &self.composer.palette;
         let arrow = draw(ends, size, palette.text, palette.background).into_iter();
         let item = match ends == whole {
