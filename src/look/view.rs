@@ -29,7 +29,7 @@ pub struct View {
     /// Colours and type.
     #[serde(flatten)]
     pub look: Style,
-    /// The words below the time. Default: `after release`; in scenes with `hold` or `grab` `after the start`.
+    /// The words below the time. Default: `after release`; in scenes with `hold`, `grab`, `load` or `states` `after the start`.
     #[serde(serialize_with = "open")]
     #[schemars(length(max = 80))]
     pub clock: String,

@@ -176,8 +176,9 @@ fn what_is_not_said_has_its_documented_default() {
     assert_eq!((camera.distance, camera.target), (8.5, DVec3::new(0.0, 0.5, 0.0)));
     assert_eq!((scene.view.size, scene.view.clock.as_str()), ([1280, 720], "after release"));
     let body = "[body]\nlattice = { cells = [1, 1, 1], side = 1 }\n";
-    let held = good(&format!("{WORLD}{body}[[hold]]\nnodes = [0]\nuntil = 0.5\n"));
-    assert_eq!(held.view.clock, "after the start");
+    for pushed in ["[[hold]]\nnodes = [0]\nuntil = 0.5\n", "[[load]]\nforce = [0, 1, 0]\n"] {
+        assert_eq!(good(&format!("{WORLD}{body}{pushed}")).view.clock, "after the start");
+    }
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::look::print::{SizeFile, TextScaleFile, unit};
 use crate::look::typed::TypedColour;
 use crate::look::{CameraFile, ColourScale, FontFiles, Palette, View, Visible};
 use crate::reading::collector::{Collector, Here, key_path};
+use crate::scene::Run;
 use crate::sim::Field;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
@@ -73,8 +74,10 @@ impl View {
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
         view.look.font = font;
         view.clock = get(typed, "clock", report).unwrap_or_else(|| {
-            let is_gripped = scene.runs.iter().any(|run| !run.grips.is_empty());
-            if is_gripped { "after the start".to_owned() } else { "after release".to_owned() }
+            // A result of another program may begin anywhere.
+            let is_released = |run: &Run| run.grips.is_empty() && run.loads.is_empty() && run.recording.is_none();
+            let moment = if scene.runs.iter().all(is_released) { "release" } else { "the start" };
+            format!("after {moment}")
         });
         let ghost: Option<String> = get(typed, "ghost", report);
         view.ghost = ghost.and_then(|name| compared::ghost(&name, scene, report));
