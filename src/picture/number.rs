@@ -65,6 +65,11 @@ pub(super) fn metre(extent: f64) -> (f64, &'static str) {
     prefix_of(extent / 30.0)
 }
 
+/// Whether lengths up to one (m) have one to three digits in the unit of a body of a size (m). Zero has none in any unit.
+pub(super) fn suits(longest: f64, extent: f64) -> bool {
+    longest == 0.0 || (0.999_5..999.5).contains(&(longest / metre(extent).0))
+}
+
 /// A count.
 pub(super) fn count(count: usize) -> String {
     with_minus(count.to_string())
@@ -78,7 +83,7 @@ pub(super) fn counted(text: String) -> String {
     }
 }
 
-/// A small length (m), in the unit that suits the size of the body (m) throughout a run.
+/// A small length (m), in the unit that suits the size of the body (m) throughout a run; a far longer one in that of charts.
 pub(super) fn length(metres: f64, extent: f64) -> String {
     if !metres.is_finite() {
         return "∞".to_owned();
@@ -90,7 +95,7 @@ pub(super) fn length(metres: f64, extent: f64) -> String {
     match value.abs() {
         size if size < 0.05 && metres > ROUND_OFF * extent => format!("< 0.1 {unit}"),
         size if size < 9.95 => with_minus(format!("{value:.1} {unit}")),
-        size if size < 99_999.5 => with_minus(format!("{value:.0} {unit}")),
+        size if size < 999.5 => with_minus(format!("{value:.0} {unit}")),
         _ => with_minus(quantity(metres, "m")),
     }
 }
@@ -208,7 +213,7 @@ mod tests {
         );
         assert_eq!(length(2.5, 100.0), "2.5 m");
         assert_eq!(length(f64::NAN, 0.3), "∞");
-        assert_eq!(length(1e12, 0.3), "1 Tm");
+        assert_eq!([length(0.83, 0.3), length(4.12, 0.3), length(1e12, 0.3)], ["830 mm", "4.12 m", "1 Tm"]);
         assert_eq!([length(4e-9, 6e-6), length(2e3, 5e5)], ["4.0 nm", "2.0 km"]);
     }
 

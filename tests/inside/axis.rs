@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn ticks_are_few_and_round() {
     type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
-    let expected: [Case; 29] = [
+    let expected: [Case; 31] = [
         (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
         (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
         (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),
@@ -13,6 +13,9 @@ fn ticks_are_few_and_round() {
         (Kind::Count, [0.0, 27.0], "", 2, &["0", "30"], ""),
         (Kind::Count, [0.0, 9.0], "", 3, &["0", "5", "10"], ""),
         (Kind::Value, [0.0, 0.102], "m", 4, &["0", "40", "80", "120"], "mm"),
+        // Far longer than the body of 0.3 m, and far shorter than a millimetre.
+        (Kind::Value, [0.0, 3.136], "m", 4, &["0", "2", "4"], "m"),
+        (Kind::Value, [0.0, 1.02e-4], "m", 4, &["0", "40", "80", "120"], "µm"),
         (Kind::Value, [0.0, 7.28], "N", 3, &["0", "4", "8"], "N"),
         (Kind::Value, [0.0, 225.0], "N", 3, &["0", "250"], "N"),
         (Kind::Value, [0.0, 225.0], "N", 4, &["0", "100", "200", "300"], "N"),

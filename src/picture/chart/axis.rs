@@ -97,11 +97,11 @@ impl Axis {
 
 impl Stretch {
     /// A stretch for values of a unit between two ends, with at least two and at most `most` ticks, if there are such
-    /// round numbers. Lengths have the unit for a body of a size (m).
+    /// round numbers. Lengths have the unit for a body of a size (m) unless they are far larger or smaller.
     pub(in crate::picture) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, extent: f64, most: usize) -> Self {
         let largest = low.abs().max(high.abs());
         let (factor, prefix) = match kind {
-            _ if unit == "m" => number::metre(extent),
+            _ if unit == "m" && number::suits(largest, extent) => number::metre(extent),
             // Kiloseconds are not in use.
             _ if unit == "s" => prefix(largest.min(1.0)),
             _ if takes_prefix(unit) => prefix(largest),
