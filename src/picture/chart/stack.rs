@@ -23,6 +23,8 @@ use std::sync::Arc;
 const MOST_TICKS: usize = 4;
 /// The most numbers along an axis of displacements.
 const MOST_WAYS: usize = 9;
+/// The dashes of the thin curves of bodies, by their number in a colour: neighbours differ most.
+const THIN_DASHES: [usize; 8] = [0, 1, 3, 2, 7, 4, 5, 6];
 /// The meaning of a band where a curve is dense.
 const BAND: [&str; 2] = ["filled where it", "oscillates fast"];
 
@@ -81,7 +83,7 @@ impl Quantity {
             // Curves of one colour differ in dashes, whichever run they are of.
             for at in 0..series.len() {
                 let alike = series[..at].iter().filter(|other| other.style.colour == series[at].style.colour).count();
-                series[at].style.dash = writer.palette.dash(alike);
+                series[at].style.dash = writer.palette.dash(THIN_DASHES[alike % THIN_DASHES.len()]);
             }
             0
         } else {
