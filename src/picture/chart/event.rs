@@ -1,7 +1,7 @@
 //! Events in time series, in words. Flags in a chart and in panels mark them.
 
 use super::ring;
-use super::series::{Series, in_words};
+use super::series::{LEAST_RANGE, Series, in_words};
 use crate::colour::Colour;
 use crate::look::Plot;
 use crate::picture::caption::{DIVERGES, RECORDING_ENDS, Writer};
@@ -75,8 +75,9 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
         } else if let (Some(&[_, start]), Some(&[_, last])) = (one.points.first(), one.points.last()) {
             let apart = |value: f64, other: f64| (value - other).abs();
             let extreme = one.points.iter().max_by(|a, b| apart(a[1], start).total_cmp(&apart(b[1], start)));
-            let stands_out =
-                |value: f64| [start, last].iter().all(|&other| apart(value, other) > EXTREME * (widest[1] - widest[0]));
+            // The axis of a value that hardly changes is wider than its range.
+            let shown = (widest[1] - widest[0]).max(LEAST_RANGE * widest[0].abs().max(widest[1].abs()));
+            let stands_out = |value: f64| [start, last].iter().all(|&other| apart(value, other) > EXTREME * shown);
             let extreme = extreme.filter(|[_, value]| one.diverged.is_none() && stands_out(*value));
             own.extend(extreme.map(|&[time, most]| {
                 let which = if most > start { "highest" } else { "lowest" };
@@ -223,6 +224,9 @@ mod tests {
         assert_eq!(words(Diagnostic::ShapeError, &[error]), ["highest 102 mm at 50 ms"]);
         let volume = series(0, false, &[[0.0, 1.0], [0.05, 0.6], [3.0, 1.0]]);
         assert_eq!(words(Diagnostic::VolumeRatio, &[volume]), ["lowest 0.60 at 50 ms"]);
+        // What stays but for round-off has none.
+        let kept = series(0, false, &[[0.0, 30.0], [0.05, 30.0 - 1e-12], [3.0, 30.0]]);
+        assert!(words(Diagnostic::Momentum, &[kept]).is_empty());
         let rising = series(0, false, &[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]);
         let blown = Series { diverged: Some(0.971), ..rising.clone() };
         assert_eq!(words(Diagnostic::Kinetic, &[rising, blown]), ["diverges at 971 ms"]);

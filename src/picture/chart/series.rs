@@ -15,7 +15,7 @@ const NEAR_ZERO: f64 = 3.0;
 /// A force that is smaller than this part of the weight of the bodies on Earth is round-off.
 const ROUND_OFF: f64 = 1e-9;
 /// A range is at least this part of its values, so that round-off does not fill a chart.
-const LEAST_RANGE: f64 = 0.02;
+pub(super) const LEAST_RANGE: f64 = 0.02;
 
 /// The series of one run in a chart.
 #[derive(Clone, Debug, Default)]
