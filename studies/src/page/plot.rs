@@ -50,8 +50,6 @@ const STRONG: f64 = 3.2;
 const SLOPE: f64 = 1.2;
 const DOT: f64 = 3.6;
 const STRONG_DOT: f64 = 5.0;
-/// The distance from all other curves at which a point stands alone (px).
-const ALONE: f64 = 14.0;
 /// The gap from the end of a slope to its name (px).
 const GAP: f64 = 4.0;
 /// The colour of lines of known slopes.
@@ -152,16 +150,21 @@ impl Plot {
         chart
     }
 
-    /// The point from which a line leads to a curve's name: its last one that stands alone, or the one that is farthest from
-    /// other curves.
+    /// The point from which a line leads to the right to a curve's name: the last one of those from where it crosses fewest curves.
     fn named(&self, chart: &Chart, area: Area, curve: &Line) -> Option<[f64; 2]> {
-        let others = self.curves.iter().filter(|other| !std::ptr::eq(*other, curve)).flat_map(Line::shown);
-        let others: Vec<_> = others.map(|point| chart.at(area, point)).collect();
-        let alone = |point: [f64; 2]| {
+        let pixels = |curve: &Line| curve.shown().map(|point| chart.at(area, point)).collect::<Vec<_>>();
+        let others: Vec<_> = self.curves.iter().map(pixels).collect();
+        let crossed = |&point: &[f64; 2]| {
             let [x, y] = chart.at(area, point);
-            others.iter().map(|other| libm::hypot(other[0] - x, other[1] - y)).fold(ALONE, f64::min)
+            let crosses = |two: &[[f64; 2]]| {
+                let [left, right] = [two[0], two[1]];
+                let share = (y - left[1]) / (right[1] - left[1]);
+                // Curves through the same point are beside each other there.
+                (0.0..=1.0).contains(&share) && left[0] + share * (right[0] - left[0]) > x + DOT
+            };
+            others.iter().filter(|other| other.windows(2).any(crosses)).count()
         };
-        curve.shown().max_by(|&one, &other| alone(one).total_cmp(&alone(other)))
+        curve.shown().collect::<Vec<_>>().into_iter().rev().min_by_key(crossed)
     }
 
     fn draw(&self, diagram: &mut Diagram, area: Area, families: &HashMap<&str, Colour>, ranges: [[f64; 2]; 2]) {
