@@ -71,9 +71,9 @@ pub(super) fn bare(ends: [DVec2; 2], size: f64, colour: Colour) -> Item {
 /// A curve through pixels, two or more, that ends with the head of an arrow, for type of a unit and arrows of a size.
 pub(super) fn bent(pixels: &[DVec2], [unit, size]: [f64; 2], palette: &Palette) -> Item {
     let (tip, long) = (pixels[pixels.len() - 1], SHAPE[0] * HEAD * size);
-    // A curve that is short in the picture, as from its side, has a shorter head, of up to half of its pieces.
-    let far = |&at: &usize| pixels[at].distance(tip) >= long;
-    let joint = (pixels.len() / 2..pixels.len()).rev().find(far).unwrap_or(pixels.len() / 2);
+    // A curve that is short in the picture, as from its side, has a shorter head, of up to a third of its pieces.
+    let (far, first) = (|&at: &usize| pixels[at].distance(tip) >= long, 2 * pixels.len() / 3);
+    let joint = (first..pixels.len()).rev().find(far).unwrap_or(first);
     let way = (tip - pixels[joint]) / SHAPE[3];
     let (corners, part) = outline([tip - way, tip], HEAD * size);
     let head = Path::polygon(&corners[1..6].iter().copied().map(point).collect::<Vec<_>>());
