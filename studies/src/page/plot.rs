@@ -153,7 +153,7 @@ impl Plot {
     /// The point from which a line leads to the right to a curve's name: the last one of those from where it crosses fewest curves.
     fn named(&self, chart: &Chart, area: Area, curve: &Line) -> Option<[f64; 2]> {
         let pixels = |curve: &Line| curve.shown().map(|point| chart.at(area, point)).collect::<Vec<_>>();
-        let others: Vec<_> = self.curves.iter().map(pixels).collect();
+        let all: Vec<_> = self.curves.iter().map(pixels).collect();
         let crossed = |&point: &[f64; 2]| {
             let [x, y] = chart.at(area, point);
             let crosses = |two: &[[f64; 2]]| {
@@ -162,7 +162,7 @@ impl Plot {
                 // Curves through the same point are beside each other there.
                 (0.0..=1.0).contains(&share) && left[0] + share * (right[0] - left[0]) > x + DOT
             };
-            others.iter().filter(|other| other.windows(2).any(crosses)).count()
+            all.iter().filter(|curve| curve.windows(2).any(crosses)).count()
         };
         curve.shown().collect::<Vec<_>>().into_iter().rev().min_by_key(crossed)
     }
