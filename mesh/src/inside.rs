@@ -5,9 +5,9 @@
 //! crosses. Exact predicates (J. Shewchuk, 1997) decide what is crossed; a point on a line or in a plane of the surface counts as
 //! moved by infinitely little, and by least along x (H. Edelsbrunner and E. Mücke, 1990).
 //!
-//! Other surfaces have a fractional winding number (A. Jacobson et al., 2013). They are closed by fans of triangles over their open
-//! edges, and the parts of the sphere that the fans hide from the point are taken off again: cheap, for most surfaces have few open
-//! edges. Fans far away are lumped together (G. Barill et al., 2018).
+//! Other surfaces have a fractional winding number (A. Jacobson et al., 2013). They are closed by triangles between their open
+//! edges, and the parts of the sphere that these hide from the point are taken off again: cheap, for most surfaces have few open
+//! edges. Triangles far away are lumped together (G. Barill et al., 2018).
 
 mod closing;
 mod columns;
@@ -16,7 +16,7 @@ mod tests;
 mod winding;
 
 use super::Surface;
-use closing::{caps, simple, without_sheets};
+use closing::{caps, without_sheets};
 pub(crate) use columns::Columns;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -49,24 +49,21 @@ impl Grid {
 
 impl Inside {
     pub(crate) fn new(surface: &Surface) -> Self {
-        let (points, mut caps) = caps(surface);
+        let [mut hiding, straight] = caps(surface);
         let mut all = surface.triangles.clone();
-        let hiding;
+        let mut caps = [&hiding[..], &straight].concat();
         if caps.len() > all.len() {
             // Triangles that hardly hang together are closed with less by each other's backs, which leaves nothing to cross.
             caps = all.iter().map(|&[a, b, c]| [a, c, b]).collect();
-            hiding = caps.clone();
+            hiding.clone_from(&caps);
             all.clear();
-        } else {
-            hiding = simple(&points, &caps);
+        } else if !caps.is_empty() {
             all.extend(&caps);
-            if !caps.is_empty() {
-                all = without_sheets(&points, &all);
-            }
+            all = without_sheets(&surface.points, &all);
         }
-        let corners =
-            |caps: Vec<[u32; 3]>| caps.into_iter().map(|cap| cap.map(|point| points[point as usize])).collect();
-        Self { columns: Columns::new(&points, &all), caps: corners(caps), hiding: Caps::new(corners(hiding)) }
+        let corners = |caps: &[[u32; 3]]| caps.iter().map(|&cap| surface.corners(cap)).collect();
+        let columns = Columns::new(&surface.points, &all);
+        Self { columns, caps: corners(&caps), hiding: Caps::new(corners(&hiding)) }
     }
 
     /// About how many triangles are looked at to tell whether a point is inside, beside those that a line crosses.

@@ -1,43 +1,93 @@
 //! Triangles that close a surface.
 
 use crate::Surface;
-use crate::edges::{EdgeUse, Sets, net, pieces};
+use crate::edges::{EdgeUse, net, pieces};
 use glam::DVec3;
-use std::collections::HashMap;
 
-/// Triangles that close a surface: for each group of edges that meet and are not passed as often in one direction as in
-/// the other, a fan over the middle of their points. Returns the surface's points with the middles, and the triangles.
-pub(super) fn caps(surface: &Surface) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let uses = EdgeUse::all(&surface.triangles);
-    let open =
-        || uses.chunk_by(EdgeUse::same).map(|edge| (edge[0].low, edge[0].high, net(edge))).filter(|edge| edge.2 != 0);
-    let mut points = surface.points.clone();
-    if open().next().is_none() {
-        return (points, Vec::new());
+/// Triangles that close a surface: for each ring of edges that are not passed as often in one direction as in the other, those between
+/// the points in which it turns, and those between the points of each of its straight lines, which hide nothing.
+pub(super) fn caps(surface: &Surface) -> [Vec<[u32; 3]>; 2] {
+    let mut open = Vec::new();
+    for edge in EdgeUse::all(&surface.triangles).chunk_by(EdgeUse::same) {
+        let (net, [low, high]) = (net(edge), [edge[0].low, edge[0].high]);
+        let back = if net > 0 { [high, low] } else { [low, high] };
+        open.extend(std::iter::repeat_n(back, net.unsigned_abs() as usize));
     }
-    let mut groups = Sets::new(points.len());
-    open().for_each(|(low, high, _)| groups.join(low, high));
-    let (group_of, count) = groups.numbered();
-    let mut middles = vec![(DVec3::ZERO, 0u32); count];
-    for (low, high, _) in open() {
-        let (sum, number) = &mut middles[group_of[low as usize] as usize];
-        *sum += points[low as usize] + points[high as usize];
-        *number += 2;
+    let (mut turning, mut straight) = (Vec::new(), Vec::new());
+    for ring in rings(surface.points.len(), open) {
+        let (ring, turns) = turns(&surface.points, ring);
+        let corners: Vec<u32> = turns[1..].iter().map(|&turn| ring[turn]).collect();
+        divide(&corners, &mut turning);
+        turns.windows(2).for_each(|ends| divide(&ring[ends[0]..=ends[1]], &mut straight));
     }
-    let mut middle_of = vec![0; count];
-    for (middle, &(sum, number)) in middle_of.iter_mut().zip(&middles) {
-        if number > 0 {
-            *middle = points.len() as u32;
-            points.push(sum / f64::from(number));
+    [turning, straight]
+}
+
+/// The rings that directed edges make between so many points. As many edges end in each point as start there.
+fn rings(points: usize, mut open: Vec<[u32; 2]>) -> Vec<Vec<u32>> {
+    open.sort_unstable();
+    let mut next = vec![0; points + 1];
+    open.iter().for_each(|edge| next[edge[0] as usize + 1] += 1);
+    (0..points).for_each(|point| next[point + 1] += next[point]);
+    let ends = next[1..].to_vec();
+    let (mut rings, mut path, mut place_of) = (Vec::new(), Vec::new(), vec![usize::MAX; points]);
+    for &[start, _] in &open {
+        let mut at = start as usize;
+        loop {
+            // A path that meets itself has closed a ring, and goes on from there.
+            if place_of[at] != usize::MAX {
+                let ring = path.split_off(place_of[at]);
+                ring.iter().for_each(|&point: &u32| place_of[point as usize] = usize::MAX);
+                rings.push(ring);
+            }
+            if next[at] == ends[at] {
+                break;
+            }
+            place_of[at] = path.len();
+            path.push(at as u32);
+            next[at] += 1;
+            at = open[next[at] - 1][1] as usize;
         }
     }
-    let mut caps = Vec::new();
-    for (low, high, net) in open() {
-        let middle = middle_of[group_of[low as usize] as usize];
-        let cap = if net > 0 { [middle, high, low] } else { [middle, low, high] };
-        caps.extend(std::iter::repeat_n(cap, net.unsigned_abs() as usize));
+    rings
+}
+
+/// A ring that starts and ends with the same point, a turn if it has one, and the places in it where straight lines start or end.
+fn turns(points: &[DVec3], mut ring: Vec<u32>) -> (Vec<u32>, Vec<usize>) {
+    /// How far, as a part of its distance from the start of a line, a point on the line may be beside it.
+    const BESIDE: f64 = 1e-4;
+    let is_straight = |[start, second, point]: [u32; 3]| {
+        let [start, second, point] = [start, second, point].map(|point| points[point as usize]);
+        let (along, way) = ((second - start).normalize_or_zero(), point - start);
+        way.cross(along).length() <= BESIDE * way.dot(along)
+    };
+    let count = ring.len();
+    let is_turn = |&at: &usize| !is_straight([-1, 0, 1].map(|by| ring[(at + count).wrapping_add_signed(by) % count]));
+    let first = (0..count).find(is_turn).unwrap_or(0);
+    ring.rotate_left(first);
+    ring.push(ring[0]);
+    let mut turns = vec![0];
+    for at in 2..=count {
+        let start = turns[turns.len() - 1];
+        if at > start + 1 && !is_straight([start, start + 1, at].map(|at| ring[at])) {
+            turns.push(at - 1);
+        }
     }
-    (points, caps)
+    turns.push(count);
+    (ring, turns)
+}
+
+/// Divides the polygon between points that follow each other into triangles. Halves of the points are cut off first, so that few
+/// triangles are long: these would be near to many points that are asked for, and in the columns of many.
+fn divide(points: &[u32], triangles: &mut Vec<[u32; 3]>) {
+    if let [first, .., last] = *points
+        && points.len() > 2
+    {
+        let half = points.len() / 2;
+        triangles.push([first, points[half], last]);
+        divide(&points[..=half], triangles);
+        divide(&points[half..], triangles);
+    }
 }
 
 /// The triangles of those pieces of a closed surface that are not flat. A line crosses a flat one twice at one place, or not at all.
@@ -64,50 +114,4 @@ pub(super) fn without_sheets(points: &[DVec3], all: &[[u32; 3]]) -> Vec<[u32; 3]
     }
     let is_kept = |of: &&[u32; 3]| areas[piece(of)][1] < (1.0 - FLAT) * areas[piece(of)][0];
     all.iter().filter(is_kept).copied().collect()
-}
-
-/// Fans with one triangle in place of those whose open edges are a straight line, as the parts of an edge are that was divided, and in
-/// place of three that are a triangle.
-pub(super) fn simple(points: &[DVec3], caps: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let mut fans = straightened(points, caps);
-    // What began in the midst of a line is now before what begins at its start.
-    fans.reverse();
-    fans = straightened(points, &fans);
-    fans.sort_by_key(|fan| fan[0]);
-    let whole = |fan: &[[u32; 3]]| match *fan {
-        [[_, a, b], [_, c, d], [_, e, f]] if b == c && d == e && f == a => vec![[a, c, e]],
-        [[_, a, b], [_, c, d], [_, e, f]] if b == e && f == c && d == a => vec![[a, e, c]],
-        _ => fan.to_vec(),
-    };
-    fans.chunk_by(|one, other| one[0] == other[0]).flat_map(whole).collect()
-}
-
-/// Fans in which open edges that go on straight are one.
-fn straightened(points: &[DVec3], caps: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    /// How far, as a part of its distance from the start of a line, a point on the line may be beside it.
-    const BESIDE: f64 = 1e-4;
-    let mut next = HashMap::new();
-    for (at, &[middle, from, _]) in caps.iter().enumerate() {
-        // A point from which several edges start ends lines.
-        next.entry((middle, from)).and_modify(|next| *next = None).or_insert(Some(at));
-    }
-    let mut is_done = vec![false; caps.len()];
-    let mut fewer = Vec::new();
-    for (at, &[middle, from, mut to]) in caps.iter().enumerate() {
-        if std::mem::replace(&mut is_done[at], true) {
-            continue;
-        }
-        let start = points[from as usize];
-        let along = (points[to as usize] - start).normalize_or_zero();
-        while let Some(&Some(beyond)) = next.get(&(middle, to)) {
-            let way = points[caps[beyond][2] as usize] - start;
-            let is_straight = way.cross(along).length() <= BESIDE * way.dot(along);
-            if !is_straight || std::mem::replace(&mut is_done[beyond], true) {
-                break;
-            }
-            to = caps[beyond][2];
-        }
-        fewer.push([middle, from, to]);
-    }
-    fewer
 }
