@@ -12,9 +12,10 @@ pub(super) struct Caps {
 /// Neighbouring triangles.
 struct Lump {
     range: std::ops::Range<usize>,
-    /// The mean of their middles, by area, and the greatest distance of a corner from it.
+    /// The mean of their middles, by area.
     middle: DVec3,
-    radius: f64,
+    /// From points farther away than this they look like one.
+    reach: f64,
     /// The sum of their normals with the length of their area.
     area: DVec3,
     /// The node after this one and those below it.
@@ -45,6 +46,9 @@ impl Caps {
         }
         let mean = sum / weight;
         let radius = triangles.as_flattened().iter().map(|corner| corner.distance(mean)).fold(0.0, f64::max);
+        // At this distance the errors of all lumps are together one or two hundredths, far less than matters to what is above ½. The
+        // error of one is about its area times its radius by the third power of the distance.
+        let reach = (2.0 * radius).max(2.7 * libm::cbrt(weight * radius));
         let at = self.nodes.len();
         let many = triangles.len() > 4;
         if many {
@@ -53,7 +57,7 @@ impl Caps {
             let axis = (high - low).max_position();
             triangles.sort_by(|a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
         }
-        self.nodes.push(Lump { range: range.clone(), middle: mean, radius, area, next: 0 });
+        self.nodes.push(Lump { range: range.clone(), middle: mean, reach, area, next: 0 });
         if many {
             let half = range.start.midpoint(range.end);
             self.build(range.start..half);
@@ -68,8 +72,7 @@ impl Caps {
         while let Some(lump) = self.nodes.get(at) {
             let to = lump.middle - point;
             let distance = to.length();
-            // At this distance the errors of all lumps are together one or two hundredths, far less than matters to what is above ½.
-            if distance > 3.0 * lump.radius {
+            if distance > lump.reach {
                 sum += to.dot(lump.area) / (distance * distance * distance);
                 at = lump.next;
             } else if lump.next == at + 1 {
