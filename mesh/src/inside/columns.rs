@@ -30,11 +30,12 @@ impl Columns {
             (DVec3 { x: 0.0, ..low }, DVec3 { x: 0.0, ..high })
         };
         let (boxes, ends): (Vec<_>, _) = (corners.iter().map(|of| flat(of)).collect(), flat(corners.as_flattened()));
-        // As many cells as triangles, or fewer if these are large.
-        let extent = ends.1 - ends.0;
-        let squares: f64 = boxes.iter().map(|(low, high)| low.distance_squared(*high)).sum();
-        let square = squares.max(extent.y * extent.z) / corners.len().max(1) as f64;
-        let boxes = Boxes::new(boxes, ends, libm::sqrt(square).max(f64::MIN_POSITIVE));
+        // As many cells as triangles, or fewer if these are large, so that each is in a few.
+        let (extent, count) = (ends.1 - ends.0, corners.len().max(1) as f64);
+        let mean = |of: fn(DVec3) -> f64| boxes.iter().map(|(low, high)| of(*high - *low)).sum::<f64>() / count;
+        let square = mean(|size| 0.25 * size.y * size.z).max(extent.y * extent.z / count);
+        let side = libm::sqrt(square).max(mean(|size| 0.25 * (size.y + size.z)));
+        let boxes = Boxes::new(boxes, ends, side.max(f64::MIN_POSITIVE));
         Self { corners, boxes }
     }
 
