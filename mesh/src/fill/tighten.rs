@@ -119,12 +119,14 @@ impl Near<'_> {
 
     /// A place, if it is inside or near to the surface, or one that is on the way there; and whether it is another.
     fn goal(&self, at: DVec3) -> Option<(DVec3, bool)> {
-        if self.lattice.contains(at) {
+        let nearest = |most: f64| self.nearest(at, most * self.lattice.side);
+        // To look for the surface so near takes less time than to tell the side of an open one.
+        if nearest(NEAR).is_some() || self.lattice.contains(at) {
             return Some((at, false));
         }
-        let surface = self.nearest(at, 4.0 * self.lattice.side)?;
+        let surface = nearest(4.0)?;
         let far = at.distance(surface) / self.lattice.side;
-        Some(if far > NEAR { (surface + (at - surface) * (NEAR / far), true) } else { (at, false) })
+        Some((surface + (at - surface) * (NEAR / far), true))
     }
 
     /// Draws nodes to the surface, one after the other. Returns those that stay far from it.
