@@ -102,7 +102,7 @@ fn is_obj(text: &[u8]) -> bool {
     let mut lines = lines.filter(|line| !line.is_empty() && line[0] != b'#');
     let first =
         lines.find(|line| !["mtllib ", "usemtl ", "o ", "g "].iter().any(|word| line.starts_with(word.as_bytes())));
-    let words = first.and_then(|line| std::str::from_utf8(line).ok()).unwrap_or_default();
-    let mut words = words.split_whitespace();
+    let words = first.and_then(|line| std::str::from_utf8(line.split(|&byte| byte == b'#').next()?).ok());
+    let mut words = words.unwrap_or_default().split_whitespace();
     words.next() == Some("v") && words.take(3).filter(|word| word.parse::<f64>().is_ok()).count() == 3
 }

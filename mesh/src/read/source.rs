@@ -31,7 +31,7 @@ pub(super) struct Source<'b> {
     pub(super) coding: Coding,
     /// Whether a line that ends in a backslash goes on in the next.
     pub(super) continues: bool,
-    /// What begins a comment up to the end of the line wherever a word may stand, if anything does.
+    /// What begins a comment up to the end of the line before a word or in it, if anything does.
     pub(super) comment: Option<u8>,
 }
 
@@ -98,7 +98,11 @@ impl<'b> Source<'b> {
     pub(super) fn word(&mut self) -> &'b [u8] {
         self.skip_space();
         let rest = self.rest();
-        let length = rest.iter().position(|&byte| is_space(byte)).unwrap_or(rest.len());
+        // Windows writes `1.#QNAN`, `1.#IND` and `1.#INF` for what is no number.
+        let is_in_number =
+            |at: usize| rest[..at].ends_with(b"1.") && matches!(rest.get(at + 1), Some(b'Q' | b'I' | b'S'));
+        let ends = |&at: &usize| is_space(rest[at]) || self.comment == Some(rest[at]) && !is_in_number(at);
+        let length = (0..rest.len()).find(ends).unwrap_or(rest.len());
         self.at += length;
         &rest[..length]
     }
@@ -128,7 +132,7 @@ impl<'b> Source<'b> {
             return None;
         }
         let (start, comment) = (self.at, self.comment);
-        let begins = |pair: &[u8]| is_space(pair[0]) && Some(pair[1]) == comment;
+        let begins = |pair: &[u8]| (is_space(pair[0]) || pair[0].is_ascii_digit()) && Some(pair[1]) == comment;
         let has_comment =
             |line: &[u8]| comment.is_some() && line.first() == comment.as_ref() || line.windows(2).any(begins);
         loop {

@@ -168,6 +168,22 @@ fn off_has_its_numbers_in_any_line_and_more_than_coordinates() {
 
 /// Paths of folders end in a backslash.
 #[test]
+fn comments_begin_directly_behind_numbers() {
+    let obj = "v 0 0 0# a point\nv 1 0 0.5#2 3\nv 0 2. 1.# x\nv 0 2 1.#QNAN\ng a#b# c\nf 1/1 2/2 3/#note\nf 3 2 1# C:\\\nf 1 2 3#\n";
+    let off = "OFF# a surface\n3 1 0# counts\n0 0 0#\n1 0 0.5#2\n0 2. 1.# x\n3 0 1 2# 3\n";
+    let medit = "MeshVersionFormatted 2# a\nDimension 3#\nVertices 3#\n0 0 0 0#\n1 0 0.5 0#2\n0 2. 1. 0\nTriangles 1# x\n\
+                 1 2 3 0# y\nEnd#\n";
+    for (text, format) in [(obj, Format::Obj), (off, Format::Off), (medit, Format::Medit)] {
+        let found = surface(text, format);
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.0, 2.0, 1.0]].map(DVec3::from_array);
+        assert_eq!((&found.points[..], found.triangles[0]), (&points[..], [0, 1, 2]), "{text}");
+    }
+    // A name keeps what is directly behind its letters.
+    let found = surface(obj, Format::Obj);
+    assert_eq!((found.triangles.len(), found.groups[0].name.as_str()), (3, "a#b#"));
+}
+
+#[test]
 fn comments_are_not_continued() {
     let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     for comment in ["# folder C:\\models\\", "  # C:\\", "#\\"] {
