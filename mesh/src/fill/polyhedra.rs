@@ -120,11 +120,11 @@ impl<'l> Cutting<'l> {
         if thin.iter().any(|&thin| thin > 0) {
             let found = cutting.candidates();
             let (faces, cubes): (Vec<_>, Vec<_>) =
-                found.chunk_by(|one, other| one.0 == other.0).partition(|of| of[0].0 % 4 < 3);
+                found.chunk_by(|one, other| one.key == other.key).partition(|of| of[0].key % 4 < 3);
             for of in [faces, cubes] {
                 let made: Vec<_> = of.into_par_iter().flat_map_iter(|of| cutting.extremes(of)).collect();
                 cutting.inner.extend(made);
-                cutting.inner.sort_by_key(|&(key, _)| key);
+                cutting.inner.sort_by_key(|inner| inner.key);
             }
         }
         cutting
@@ -191,7 +191,7 @@ impl<'l> Cutting<'l> {
         let Some(inner) = cut.checked_sub(self.cuts.parts.len()) else {
             return self.lattice.along(self.cuts, cut, self.part(cut));
         };
-        self.inner[inner].1
+        self.inner[inner].at
     }
 
     /// The part of the way along its edge at which a cut is. Two cuts of an edge are moved apart if they are close to each other.

@@ -6,15 +6,19 @@ use super::{BEYOND, CLOSE, Cutting, LEAST, directions};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-/// A node in a face or in a cube, or a place for one: the place of its lowest corner times 4, and the axis across the face, or 3; and where the node is, in halves
-/// of the side from the origin.
-pub(super) type Inner = (usize, DVec3);
+/// A node in a face or in a cube, or a place for one.
+pub(super) struct Inner {
+    /// The place of the lowest corner of the face or cube times 4, and the axis across the face, or 3.
+    pub(super) key: usize,
+    /// Where the node is, in halves of the side from the origin.
+    pub(super) at: DVec3,
+}
 
 impl Cutting<'_> {
     /// The places in lists of the nodes of a face or a cube.
     pub(super) fn inner_of(&self, low: usize, which: usize) -> std::ops::Range<usize> {
         let key = 4 * low + which;
-        self.inner.partition_point(|&(other, _)| other < key)..self.inner.partition_point(|&(other, _)| other <= key)
+        self.inner.partition_point(|other| other.key < key)..self.inner.partition_point(|other| other.key <= key)
     }
 
     /// Where the surface is cut by the faces of thin cubes, and the corners of its parts in them, with their faces and cubes.
@@ -30,12 +34,12 @@ impl Cutting<'_> {
                 }
                 for &place in polygon.corners() {
                     let at = 2.0 * (place + 1.0);
-                    found.push((4 * index + 3, at));
+                    found.push(Inner { key: 4 * index + 3, at });
                     for axis in 0..AXES {
                         if at[axis] == f64::from(low[axis]) {
-                            found.push((4 * index + axis, at));
+                            found.push(Inner { key: 4 * index + axis, at });
                         } else if at[axis] == f64::from(low[axis] + 2) {
-                            found.push((4 * self.lattice.index(low + EDGES[axis]) + axis, at));
+                            found.push(Inner { key: 4 * self.lattice.index(low + EDGES[axis]) + axis, at });
                         }
                     }
                 }
@@ -43,13 +47,13 @@ impl Cutting<'_> {
             found
         };
         let mut found: Vec<_> = surface.triangles.par_iter().flat_map_iter(of_triangle).collect();
-        found.par_sort_by_key(|&(key, _)| key);
+        found.par_sort_by_key(|inner| inner.key);
         found
     }
 
     /// The nodes of a face or a cube in directions in which the surface there is far beyond the nodes known.
     pub(super) fn extremes(&self, candidates: &[Inner]) -> Vec<Inner> {
-        let key = candidates[0].0;
+        let key = candidates[0].key;
         let across = Some(key % 4).filter(|&axis| axis < AXES);
         let low = self.lattice.point(key / 4);
         let mut known = Vec::new();
@@ -68,8 +72,8 @@ impl Cutting<'_> {
         for direction in directions(across) {
             let along = |at: DVec3| at.dot(direction);
             let (mut back, reached) = range(known.iter().map(|&at| along(at)));
-            let mut farthest = candidates[0].1;
-            for &(_, at) in candidates {
+            let mut farthest = candidates[0].at;
+            for &Inner { at, .. } in candidates {
                 back = back.min(along(at));
                 if along(at) > along(farthest) {
                     farthest = at;
@@ -82,7 +86,7 @@ impl Cutting<'_> {
             let node = (farthest + thicker * direction).clamp(least, greatest);
             if along(node) - reached > 2.0 * BEYOND {
                 known.push(node);
-                made.push((key, node));
+                made.push(Inner { key, at: node });
             }
         }
         made
