@@ -51,7 +51,7 @@ pub(super) fn fill(
         return refuse(elements.len());
     }
     let weights = weights(&scene, &parts, &homes, |copy| &elements[element_of[copy] as usize]);
-    let volumes = is_graded.then(|| volumes.into_iter().map(|volume| volume * side * side * side).collect());
+    let volumes = volumes.map(|all| all.into_iter().map(|volume| volume * side * side * side).collect());
     let overlap = overlap(&scene, &cells) * side * side * side;
     let filled = filled.iter().any(|&filled| filled < 1.0).then_some(filled);
     let cage = Cage { nodes: nodes.places, elements, filled, volumes, overlap, ..Cage::default() };

@@ -37,8 +37,8 @@ pub(super) struct Graded {
     pub(super) elements: IndexLists,
     pub(super) filled: Vec<f64>,
     pub(super) element_of: Vec<u32>,
-    /// The volume inside that each node carries, in cells.
-    pub(super) volumes: Vec<f64>,
+    /// The volume inside that each node carries, in cells, if they are graded.
+    pub(super) volumes: Option<Vec<f64>>,
 }
 
 /// Makes a cube of each copy, with some joined if they are graded.
@@ -74,10 +74,17 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, is_graded: bool, nodes: &mut 
         graded.elements.push(&own);
         graded.filled.push(if cube.side > 1 { 1.0 } else { parts.copies[cube.copy as usize].filled });
     }
-    graded.volumes = vec![0.0; nodes.places.len()];
-    for cube in &cubes {
+    graded.volumes = is_graded.then(|| volumes(lattice, parts, &cubes, &is_node, nodes));
+    graded
+}
+
+/// The volume inside that each node carries, in cells.
+fn volumes(lattice: &Lattice, parts: &Parts, cubes: &[Cube], is_node: &[bool], nodes: &mut Nodes) -> Vec<f64> {
+    let mut volumes = vec![0.0; nodes.places.len()];
+    let set = |cube: &Cube, at: Cell| set(lattice, parts, cube, at);
+    for cube in cubes {
         let mut add = |at: Cell, volume: f64| {
-            graded.volumes[nodes.of(set(cube, at) as usize, || cube.place(lattice, at)) as usize] += volume;
+            volumes[nodes.of(set(cube, at) as usize, || cube.place(lattice, at)) as usize] += volume;
         };
         if cube.side == 1 {
             let own = parts.copies[cube.copy as usize].filled / 8.0;
@@ -96,7 +103,7 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, is_graded: bool, nodes: &mut 
             }
         }
     }
-    graded
+    volumes
 }
 
 /// The set of corners at a corner of a cube or in a middle, whose place is in halves of its side.
