@@ -8,6 +8,8 @@ use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 pub(super) use crossing::Cuts;
 use glam::{DVec3, IVec3};
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
 
 /// A point outside of all elements follows the nearest one if it is at most so many sides away: beyond, it would only show how
 /// that element turns.
@@ -52,6 +54,8 @@ pub(super) struct Lattice {
     /// The surface in halves of the side, from the origin.
     surface: Surface,
     inside: Inside,
+    /// Whether places (m) are inside, by the bits of their coordinates: elements that are made again ask for most of them again.
+    known: Mutex<HashMap<[u64; 3], bool>>,
     /// Where edges cross the surface.
     crossings: Vec<(u64, f64)>,
 }
@@ -67,7 +71,8 @@ impl Lattice {
         scaled.points.iter_mut().for_each(|point| *point = 2.0 * (*point + 1.0));
         let inside = Inside::new(&scaled);
         let (origin, cubes) = (lattice.origin - side, counts.as_ivec3());
-        let mut lattice = Self { origin, side, cubes, has_middles, surface: scaled, inside, crossings: Vec::new() };
+        let (known, crossings) = Default::default();
+        let mut lattice = Self { origin, side, cubes, has_middles, surface: scaled, inside, known, crossings };
         lattice.crossings = lattice.all_crossings();
         Ok(lattice)
     }
@@ -142,7 +147,14 @@ impl Lattice {
 
     /// Whether a place (m) is inside.
     pub(super) fn contains(&self, at: DVec3) -> bool {
-        self.inside.contains(self.halves(at))
+        let key = at.to_array().map(f64::to_bits);
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = known().get(&key).copied();
+        found.unwrap_or_else(|| {
+            let is_inside = self.inside.contains(self.halves(at));
+            known().insert(key, is_inside);
+            is_inside
+        })
     }
 
     pub(super) fn inside(&self) -> Vec<bool> {
