@@ -76,11 +76,12 @@ impl Boxes {
                 break;
             }
             for at in self.ring(cell, ring) {
-                // Most cells beside that of the point are farther away than what is there.
-                if self.gap(at, point) > nearest {
+                // Most cells beside that of the point are empty, or farther away than what is there.
+                let items = self.at(at);
+                if items.is_empty() || self.gap(at, point) > nearest {
                     continue;
                 }
-                for &item in self.at(at) {
+                for &item in items {
                     let (low, high) = self.all[item as usize];
                     if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
                         continue;
