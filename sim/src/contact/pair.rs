@@ -56,6 +56,11 @@ impl Pair {
         Self { of, law, way: 0.0, until: None, ahead: 0.0, candidates: Default::default(), look: Look::default() }
     }
 
+    /// Whether it is a surface with itself.
+    pub(super) fn is_own(&self) -> bool {
+        self.of[0] == self.of[1]
+    }
+
     /// Goes on to this step. The lists are made anew if features that are not in them might touch in it.
     pub(super) fn go(&mut self, seen: &Seen<'_>) {
         let [one, other] = self.of.map(|surface| &seen.start[surface]);
@@ -82,7 +87,7 @@ impl Pair {
         self.candidates.iter_mut().for_each(|list| list.renew(&[]));
         let [mine, theirs] = [one, other].map(|placed| Extent::around(placed.at.iter().copied()));
         let apart = mine.distance(&theirs);
-        if apart >= reach && self.of[0] != self.of[1] {
+        if apart >= reach && !self.is_own() {
             self.until = Some(self.way + (apart - self.law.gap));
             return;
         }
@@ -102,13 +107,13 @@ impl Pair {
             let sides = match kind {
                 Kind::Point { of: 0 } => [&of_one[0], &of_other[1]],
                 // A surface meets itself only once.
-                Kind::Point { .. } if self.of[0] == self.of[1] => continue,
+                Kind::Point { .. } if self.is_own() => continue,
                 Kind::Point { .. } => [&of_other[0], &of_one[1]],
                 Kind::Edges => [&of_one[2], &of_other[2]],
             };
             let mut found = Vec::new();
             sweep(sides, reach, axes, |features| found.push(features));
-            if self.of[0] == self.of[1] {
+            if self.is_own() {
                 let at: Vec<_> = one.surface.places(seen.rest).collect();
                 let rest = Placed { surface: one.surface, at: &at };
                 found.retain(|&features| is_free(one.surface, kind, features));
@@ -161,16 +166,15 @@ impl Pair {
     }
 }
 
-/// Whether two features of a surface share no node. Pairs of edges count once.
+/// Whether two features of a surface share no corner. Pairs of edges count once.
 fn is_free(surface: &Surface, kind: Kind, [first, second]: [u32; 2]) -> bool {
     if kind == Kind::Edges && first >= second {
         return false;
     }
-    let Surface { points, facets, edges, .. } = surface;
+    let Surface { facets, edges, .. } = surface;
     let (mine, theirs) = match kind {
         Kind::Edges => (&edges[first as usize][..], &edges[second as usize][..]),
         Kind::Point { .. } => (std::slice::from_ref(&first), facets[second as usize].used()),
     };
-    let nodes = |of| <[u32]>::iter(of).flat_map(|&point| points.of(point as usize).0);
-    !nodes(mine).any(|node| nodes(theirs).any(|other| node == other))
+    !mine.iter().any(|corner| theirs.contains(corner))
 }

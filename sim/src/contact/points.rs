@@ -52,7 +52,8 @@ impl Stage {
             for (_, terms) in pair.look.touches.iter() {
                 // Of one surface the nodes of both features are mixed.
                 let own = terms.iter().filter(|term| if on == other { term.weight > 0.0 } else { term.node < second });
-                let at = own.map(|term| places[term.node as usize] * term.weight).sum::<DVec3>();
+                let whole: f64 = own.clone().map(|term| term.weight).sum();
+                let at = own.map(|term| places[term.node as usize] * term.weight).sum::<DVec3>() / whole;
                 let is_new = |point: &ContactPoint| point.at.distance(at) > SAME * pair.law.gap;
                 if found[first..].iter().all(is_new) {
                     found.push(ContactPoint { from: self.side(other), on, at });

@@ -4,7 +4,7 @@ use super::end::{End, Ends};
 use super::features::Kind;
 use super::ground::{Ground, Near};
 use super::known::Known;
-use super::pair::Look;
+use super::pair::{Look, Pair};
 use super::rule::{Law, Term};
 use super::shown::{Shown, Way};
 use super::stage::Stage;
@@ -93,25 +93,30 @@ impl Stage {
     }
 
     /// Gives all that touches its impulse: first points and facets, then edges, in the order of pairs. What touches depends on the start of the
-    /// step alone.
+    /// step alone. Folds of one body press on many others at once, so that surfaces meet themselves twice, the first time before all else.
     fn meet(&self, known: &mut Known, end: &End<'_>, crew: &Crew) {
         /// So many pairs for each thread are looked at before they are resolved.
         const AHEAD: usize = 4;
         let Known { ends, pairs, shown, looks, .. } = known;
         let seen = self.seen(shown, Some(end.interval));
         crew.each(pairs, |_, pair| pair.go(&seen));
-        looks.resize(if crew.threads() > 1 { AHEAD * crew.threads() } else { 1 }, Look::default());
-        for kinds in [Kind::POINTS, Kind::EDGES] {
-            for pairs in pairs.chunks_mut(looks.len()) {
-                pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
-                crew.each(pairs, |_, pair| pair.look(kinds, &seen));
-                for pair in &*pairs {
-                    let sides = pair.of.map(|surface| self.side(surface));
-                    let second = self.surfaces[pair.of[1]].range().start as u32;
-                    ends.push(&pair.look.touches, pair.law, sides, second, end);
-                }
-                pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
+        let ahead = if crew.threads() > 1 { AHEAD * crew.threads() } else { 1 };
+        looks.resize(ahead, Look::default());
+        let mut meet = |kinds: &[Kind], pairs: &mut [Pair]| {
+            pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
+            crew.each(pairs, |_, pair| pair.look(kinds, &seen));
+            for pair in &*pairs {
+                let sides = pair.of.map(|surface| self.side(surface));
+                let second = self.surfaces[pair.of[1]].range().start as u32;
+                ends.push(&pair.look.touches, pair.law, sides, second, end);
             }
+            pairs.iter_mut().zip(&mut *looks).for_each(|(pair, look)| std::mem::swap(&mut pair.look, look));
+        };
+        for kinds in [Kind::POINTS, Kind::EDGES] {
+            pairs.iter_mut().filter(|pair| pair.is_own()).for_each(|own| meet(kinds, std::slice::from_mut(own)));
+        }
+        for kinds in [Kind::POINTS, Kind::EDGES] {
+            pairs.chunks_mut(ahead).for_each(|pairs| meet(kinds, pairs));
         }
     }
 }

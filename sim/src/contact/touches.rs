@@ -52,15 +52,34 @@ impl Touches {
                 sign
             }
         };
+        let is_own = of[0] == of[1];
+        if is_own {
+            merge(terms, begin);
+        }
         let distance = closest.way.length();
         let normal = closest.way * (sign / distance);
         let there = if sign > 0.0 { closest.here - closest.way } else { closest.here };
         let out = normal * other.thickness;
         let drag = seen.drag(of[1], there, out);
         let terms = [begin, self.terms.len()].map(|at| at as u32);
-        let keeps_law = closest.is_least || of[0] == of[1];
+        let keeps_law = closest.is_least || is_own;
         self.all.push(Touch { normal, distance, keeps_law, drag, terms });
     }
+}
+
+/// Adds up the weights of the nodes that both features of a pair follow, in its terms, which begin at a place.
+fn merge(terms: &mut Vec<Term>, begin: usize) {
+    let mut end = begin;
+    for at in begin..terms.len() {
+        let term = terms[at];
+        if let Some(known) = terms[begin..end].iter_mut().find(|known| known.node == term.node) {
+            known.weight += term.weight;
+        } else {
+            terms[end] = term;
+            end += 1;
+        }
+    }
+    terms.truncate(end);
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod conformance;
 mod contact;
 #[cfg(feature = "scene")]
 mod continuum;
+mod crumpled;
 mod degenerate_starts;
 mod equilibrium;
 #[allow(unreachable_pub, reason = "documentation shows it, too")]
