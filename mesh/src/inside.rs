@@ -53,7 +53,7 @@ impl Inside {
         let mut all = surface.triangles.clone();
         let mut caps = [&hiding[..], &straight].concat();
         if caps.len() > all.len() {
-            // Triangles that hardly hang together are closed with less by each other's backs, which leaves nothing to cross.
+            // Triangles that hang together at corners alone are closed with less by each other's backs, which leaves nothing to cross.
             caps = all.iter().map(|&[a, b, c]| [a, c, b]).collect();
             hiding.clone_from(&caps);
             all.clear();

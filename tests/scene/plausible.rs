@@ -175,7 +175,7 @@ fn loads_on_nodes_that_are_all_held() {
         warnings(&format!("{text}[[hold]]\nnodes = 'top'\n{hold}\n[[load]]\nforce = [1, 0, 0]\n{load}\n"))
     };
     let told = vec![(
-        "`load[0]` moves nothing: all nodes on which it acts are held".to_owned(),
+        "`load[0]` moves nothing: all nodes on which it acts are held or grabbed".to_owned(),
         "choose other nodes or faces, or remove it".to_owned(),
     )];
     assert_eq!(of("", "nodes = 'top'"), told);

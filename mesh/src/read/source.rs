@@ -132,7 +132,8 @@ impl<'b> Source<'b> {
             return None;
         }
         let (start, comment) = (self.at, self.comment);
-        let begins = |pair: &[u8]| (is_space(pair[0]) || pair[0].is_ascii_digit()) && Some(pair[1]) == comment;
+        let may_begin = |before: u8| is_space(before) || before.is_ascii_digit() || b"./".contains(&before);
+        let begins = |pair: &[u8]| may_begin(pair[0]) && Some(pair[1]) == comment;
         let has_comment =
             |line: &[u8]| comment.is_some() && line.first() == comment.as_ref() || line.windows(2).any(begins);
         loop {

@@ -133,7 +133,7 @@ impl Ground {
             terms.push(Term { node: (end.len() + feet.len()) as u32, weight: -1.0 });
             feet.push((moved, Motion::held((moved - foot) / interval.step)));
             let terms = [first, terms.len() as u32];
-            all.push(Touch { normal: plane.normal, distance, keeps_law: true, drag: DVec3::ZERO, terms });
+            all.push(Touch { at: here, normal: plane.normal, distance, keeps_law: true, drag: DVec3::ZERO, terms });
         }
     }
 }

@@ -4,6 +4,7 @@ use super::Side;
 use super::features::Kind;
 use super::ground::Ground;
 use super::pair::Pair;
+use super::rule::Touch;
 use super::shown::{Seen, Shown};
 use super::stage::Stage;
 use super::surface::Surface;
@@ -37,23 +38,18 @@ impl Stage {
         self.choose(&places, 0.0, &mut pairs);
         let mut found = Vec::new();
         for pair in &mut pairs {
-            self.points_of(pair, &seen, &places, &mut found);
+            self.points_of(pair, &seen, &mut found);
         }
         self.grounds.iter().for_each(|ground| ground.points(&self.surfaces, &places, time, &mut found));
         found
     }
 
-    fn points_of(&self, pair: &mut Pair, seen: &Seen<'_>, places: &[DVec3], found: &mut Vec<ContactPoint>) {
+    fn points_of(&self, pair: &mut Pair, seen: &Seen<'_>, found: &mut Vec<ContactPoint>) {
         pair.reach(seen, 0.5 * SLACK * pair.law.gap);
-        let ([on, other], second) = (pair.of, self.surfaces[pair.of[1]].range().start as u32);
-        let first = found.len();
+        let ([on, other], first) = (pair.of, found.len());
         for kinds in [Kind::POINTS, Kind::EDGES] {
             pair.look(kinds, seen);
-            for (_, terms) in pair.look.touches.iter() {
-                // Of one surface the nodes of both features are mixed.
-                let own = terms.iter().filter(|term| if on == other { term.weight > 0.0 } else { term.node < second });
-                let whole: f64 = own.clone().map(|term| term.weight).sum();
-                let at = own.map(|term| places[term.node as usize] * term.weight).sum::<DVec3>() / whole;
+            for (&Touch { at, .. }, _) in pair.look.touches.iter() {
                 let is_new = |point: &ContactPoint| point.at.distance(at) > SAME * pair.law.gap;
                 if found[first..].iter().all(is_new) {
                     found.push(ContactPoint { from: self.side(other), on, at });

@@ -104,7 +104,8 @@ impl Features {
             return None;
         }
         let law = Law { gap: 0.05 * from[2].distance(from[3]), restitution: 0.0, friction: 0.0 };
-        let touch = Touch { normal: way / distance, distance, keeps_law: true, drag: DVec3::ZERO, terms: [0, 4] };
+        let (at, normal) = (way, way / distance);
+        let touch = Touch { at, normal, distance, keeps_law: true, drag: DVec3::ZERO, terms: [0, 4] };
         let motion = [0, 1, 2, 3].map(|at| Motion { inverse_mass: 1.0, ..Motion::held(to[at] - from[at]) });
         let mut ends = Ends { position: to.to_vec(), motion: motion.to_vec(), step: 1.0, ..Ends::default() };
         ends.resolve(law, &touch, &[0, 1, 2, 3].map(|node| Term { node, weight: weights[node as usize] }));

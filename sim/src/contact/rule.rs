@@ -38,6 +38,8 @@ pub(super) struct Term {
 /// A pair of closest points at the start of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
+    /// The point on the first surface (m).
+    pub(super) at: DVec3,
     /// Unit vector from the point on the second surface to that on the first.
     pub(super) normal: DVec3,
     /// Their distance at the start of the step (m).
@@ -103,7 +105,7 @@ impl Ends {
             *sum += impulse * weight;
             *turn += self.place(node).cross(impulse * weight);
         }
-        (sums != [[DVec3::ZERO; 2]; 2]).then_some((sums, impulse))
+        (impulse != DVec3::ZERO || sums != [[DVec3::ZERO; 2]; 2]).then_some((sums, impulse))
     }
 
     /// Gives a pair its impulse, and returns it (N s): that on the first surface.

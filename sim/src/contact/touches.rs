@@ -58,22 +58,30 @@ impl Touches {
         }
         let distance = closest.way.length();
         let normal = closest.way * (sign / distance);
-        let there = if sign > 0.0 { closest.here - closest.way } else { closest.here };
+        let [at, there] = match sign > 0.0 {
+            true => [closest.here, closest.here - closest.way],
+            false => [closest.here - closest.way, closest.here],
+        };
         let out = normal * other.thickness;
         let drag = seen.drag(of[1], there, out);
         let terms = [begin, self.terms.len()].map(|at| at as u32);
         let keeps_law = closest.is_least || is_own;
-        self.all.push(Touch { normal, distance, keeps_law, drag, terms });
+        self.all.push(Touch { at, normal, distance, keeps_law, drag, terms });
     }
 }
 
 /// Adds up the weights of the nodes that both features of a pair follow, in its terms, which begin at a place.
 fn merge(terms: &mut Vec<Term>, begin: usize) {
+    /// What is left of weights that cancel out: it would move nodes that no other one holds back.
+    const ROUND_OFF: f64 = 1e-12;
     let mut end = begin;
     for at in begin..terms.len() {
         let term = terms[at];
         if let Some(known) = terms[begin..end].iter_mut().find(|known| known.node == term.node) {
             known.weight += term.weight;
+            if known.weight.abs() < ROUND_OFF {
+                known.weight = 0.0;
+            }
         } else {
             terms[end] = term;
             end += 1;
@@ -107,5 +115,15 @@ mod tests {
             touches.all[0].keeps_law
         };
         assert!(keeps_law([0, 0], false) && !keeps_law([0, 1], false) && keeps_law([0, 1], true));
+    }
+
+    /// Middles of faces that follow common nodes: each node has one term.
+    #[test]
+    fn common_nodes_have_one_weight() {
+        let term = |(node, weight): (u32, f64)| Term { node, weight };
+        let mut terms = [(9, 1.0), (1, 0.5), (2, 0.3), (3, 0.2), (2, -0.5), (4, -0.3), (3, -0.2)].map(term).to_vec();
+        merge(&mut terms, 1);
+        let found: Vec<_> = terms.iter().map(|&Term { node, weight }| (node, weight)).collect();
+        assert_eq!(found, [(9, 1.0), (1, 0.5), (2, -0.2), (3, 0.0), (4, -0.3)]);
     }
 }

@@ -60,13 +60,13 @@ pub(super) fn check_steps(scene: &Typed<'_>, step: f64) {
     }
 }
 
-/// Warns of loads whose nodes are held as long as they act: what holds the nodes carries them, and nothing moves.
+/// Warns of loads whose nodes are held or grabbed as long as they act: what holds the nodes carries them, and nothing moves.
 pub(super) fn warn_of_held(loads: &[SceneLoad<'_>], grips: &[SceneGrip<'_>]) {
     for SceneLoad { here, course, on, .. } in loads {
         let on = on.iter().enumerate().filter_map(|(body, borne)| Some((body, borne.as_ref()?)));
         let mut nodes = on.flat_map(|(body, borne)| borne.weights.iter().map(move |&(node, _)| (body, node)));
         if nodes.all(|node| grips.iter().any(|grip| grip.holds(node, &course.during))) {
-            let message = format!("`{here}` moves nothing: all nodes on which it acts are held");
+            let message = format!("`{here}` moves nothing: all nodes on which it acts are held or grabbed");
             here.warn(message, "choose other nodes or faces, or remove it");
         }
     }

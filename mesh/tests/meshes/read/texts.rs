@@ -166,10 +166,9 @@ fn off_has_its_numbers_in_any_line_and_more_than_coordinates() {
     assert!(refusal(b"OFFICE 1 2\n", Format::Off).starts_with("has `ICE` in line 1; expected the number of points"));
 }
 
-/// Paths of folders end in a backslash.
 #[test]
 fn comments_begin_directly_behind_numbers() {
-    let obj = "v 0 0 0# a point\nv 1 0 0.5#2 3\nv 0 2. 1.# x\nv 0 2 1.#QNAN\ng a#b# c\nf 1/1 2/2 3/#note\nf 3 2 1# C:\\\nf 1 2 3#\n";
+    let obj = "v 0 0 0# a point\nv 1 0 0.5#2 3\nv 0 2. 1.# C:\\\nv 0 2 1.#QNAN\ng a#b# c\nf 1/1 2/2 3/#note\nf 3 2 1# C:\\\nf 1 2 3#\n";
     let off = "OFF# a surface\n3 1 0# counts\n0 0 0#\n1 0 0.5#2\n0 2. 1.# x\n3 0 1 2# 3\n";
     let medit = "MeshVersionFormatted 2# a\nDimension 3#\nVertices 3#\n0 0 0 0#\n1 0 0.5 0#2\n0 2. 1. 0\nTriangles 1# x\n\
                  1 2 3 0# y\nEnd#\n";
@@ -183,6 +182,7 @@ fn comments_begin_directly_behind_numbers() {
     assert_eq!((found.triangles.len(), found.groups[0].name.as_str()), (3, "a#b#"));
 }
 
+/// Paths of folders end in a backslash.
 #[test]
 fn comments_are_not_continued() {
     let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";

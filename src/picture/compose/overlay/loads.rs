@@ -25,9 +25,11 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
     let pixels = place.pixels_a_metre(composer);
     let room = place.legend.arrow_length() / pixels;
     let scales = Scales::new(composer.scene);
-    // Not larger than any load that there is.
-    let shown = |metres: f64, largest: f64| (metres > 0.0).then(|| (room / metres).min(largest));
-    let [force, pressure] = [shown(scales.newton, scales.largest[0]), shown(scales.pascal, scales.largest[1])];
+    // Not longer than the arrow of any largest load that there is.
+    let all = [scales.newton, scales.pascal];
+    let lengths = all.into_iter().zip(scales.largest).filter(|&(metres, _)| metres > 0.0);
+    let longest = lengths.map(|(metres, largest)| metres * largest).fold(room, f64::min);
+    let [force, pressure] = all.map(|metres| (metres > 0.0).then(|| longest / metres));
     let straight = match (force, pressure) {
         (Some(force), _) => Some((number::round_below(force), scales.newton, "N")),
         (None, Some(pressure)) => Some((number::round_below(pressure), scales.pascal, scales.unit)),
