@@ -1,5 +1,6 @@
 //! Surfaces filled with elements.
 
+mod aligned;
 mod apart;
 mod clip;
 mod cubes;
@@ -23,7 +24,8 @@ use localshape_sim::{IndexLists, Weights};
 /// Weights below this are round-off.
 const CLOSE: f64 = 1e-9;
 
-/// The elements that fill a surface, all of one size (m).
+/// The elements that fill a surface, all of one size (m). Where it ends in flat faces across an axis, tetrahedra and polyhedra are by up to a
+/// half shorter along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fill {
     /// Cubes of a lattice that contain a part of the inside.
@@ -128,8 +130,8 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let alone = |surface, corner| match fill {
         Fill::Cubes { .. } => cubes::fill(surface, flaws, side, corner, false, most),
         Fill::Graded { .. } => cubes::fill(surface, flaws, side, corner, true, most),
-        Fill::Polyhedra { .. } => polyhedra::fill(surface, flaws, side, most),
-        Fill::Tetrahedra { .. } => tetrahedra::fill(surface, flaws, side, most),
+        Fill::Polyhedra { .. } => aligned::fill(surface, side, |surface| polyhedra::fill(surface, flaws, side, most)),
+        Fill::Tetrahedra { .. } => aligned::fill(surface, side, |surface| tetrahedra::fill(surface, flaws, side, most)),
     };
     let parts = if flaws.pieces > 1 { apart::parts(&surface) } else { Ok((Vec::new(), 1)) };
     let filled = match parts {

@@ -1,0 +1,69 @@
+//! Lattices with planes on the flat ends of a surface.
+//!
+//! Where a body ends in flat faces across an axis, elements that are cut there are of other sizes than the rest. The shape-based model has
+//! other stiffnesses along their axes, and tetrahedra cut off the edges between such faces.
+
+use super::{FillError, Filled};
+use crate::Surface;
+use glam::DVec3;
+
+/// Both ends of a box are flat if faces there are at least this part of it across an axis.
+const FLAT: f64 = 0.25;
+/// Shorter bodies (sides) are not stretched to whole elements, which would be much flatter than asked for.
+const LEAST: f64 = 1.0;
+/// Points nearer than this to an end, in sides, are on it.
+const ON: f64 = 1e-6;
+
+/// Fills a surface, stretched so that whole numbers of elements of a side lie between its flat ends, and moves them back.
+///
+/// # Errors
+/// Those of filling it.
+pub(super) fn fill(
+    mut surface: Surface,
+    side: f64,
+    fill: impl Fn(Surface) -> Result<Filled, FillError>,
+) -> Result<Filled, FillError> {
+    let stretch = stretch(&surface, side);
+    if stretch == DVec3::ONE {
+        return fill(surface);
+    }
+    surface.points.iter_mut().for_each(|point| *point *= stretch);
+    let mut filled = fill(surface)?;
+    let Filled { cage, surface, .. } = &mut filled;
+    surface.points.iter_mut().chain(&mut cage.nodes).for_each(|point| *point /= stretch);
+    cage.overlap /= stretch.element_product();
+    cage.volumes.iter_mut().flatten().for_each(|volume| *volume /= stretch.element_product());
+    Ok(filled)
+}
+
+/// The factors by which a surface is stretched along the axes. Elements are shorter for it, and as nearly cubes as they can be.
+fn stretch(surface: &Surface, side: f64) -> DVec3 {
+    let measures = surface.measures();
+    let size = measures.high - measures.low;
+    let is_flat = [0, 1, 2].map(|axis| {
+        let across = size.element_product() / size[axis];
+        let is_end = |end: f64| at(surface, axis, end, ON * side) >= FLAT * across;
+        size[axis] >= LEAST * side && is_end(measures.low[axis]) && is_end(measures.high[axis])
+    });
+    let along = |axis: usize, cell: f64| match is_flat[axis] {
+        // Nodes stand outside by a part of the cell, which is no longer than the side.
+        true => size[axis] / (size[axis] / cell).round().max((size[axis] / side - ON).ceil()),
+        false => cell,
+    };
+    let cells = |cell: f64| [0, 1, 2].map(|axis| along(axis, cell));
+    let uneven = |cell: f64| cells(cell).into_iter().map(|own| (own / cell).max(cell / own)).fold(1.0, f64::max);
+    let chosen = (0..3)
+        .filter(|&axis| is_flat[axis])
+        .map(|axis| along(axis, side))
+        .min_by(|one, other| uneven(*one).total_cmp(&uneven(*other)));
+    let Some(cell) = chosen else { return DVec3::ONE };
+    let stretch = DVec3::from_array(cells(cell).map(|own| side / own));
+    if (stretch - DVec3::ONE).abs().max_element() < ON { DVec3::ONE } else { stretch }
+}
+
+/// The area of the faces of a surface that lie across an axis at a place, up to a distance from it.
+fn at(surface: &Surface, axis: usize, place: f64, near: f64) -> f64 {
+    let is_there = |corner: &DVec3| (corner[axis] - place).abs() <= near;
+    let faces = surface.triangles.iter().map(|&of| surface.corners(of)).filter(|corners| corners.iter().all(is_there));
+    faces.map(|[a, b, c]| 0.5 * (b - a).cross(c - a)[axis].abs()).sum()
+}
