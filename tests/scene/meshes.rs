@@ -31,6 +31,25 @@ fn wrong(scene: &str, files: &[(&str, &[u8])], parts: &[&str]) {
     assert!(texts.into_iter().any(|text| has_parts(&text)), "{error}\nexpected {parts:?}");
 }
 
+/// A bar of one metre that is thinner than its tetrahedra, of a twentieth of a metre, has one node at its end.
+#[test]
+fn sides_on_one_line_are_told() {
+    let warnings = |wide: f64, with: &str| {
+        let corner =
+            |bits: usize| [1.0, wide, wide].into_iter().enumerate().map(move |(at, x)| x * (bits >> at & 1) as f64);
+        let corners = (0..8).map(|bits| corner(bits).fold("v".to_owned(), |line, x| format!("{line} {x}")) + "\n");
+        let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        let bar = corners.collect::<String>() + faces;
+        let scene = SCENE.replace("ply'", &format!("obj'\nfill = {{ with = '{with}', side = 0.05 }}"));
+        let scene = load(&format!("{scene}[[hold]]\nnodes = 'left'\n"), &[("body.obj", bar.as_bytes())]).unwrap();
+        let told = scene.warnings.iter().filter(|one| one.message.contains("on one line"));
+        told.map(|one| one.message.clone()).collect::<Vec<_>>()
+    };
+    let told = ["`hold[0]` takes 1 node of the body, on one line, about which it turns"];
+    assert_eq!(warnings(0.048, "tetrahedra"), told);
+    assert!(warnings(0.06, "tetrahedra").is_empty() && warnings(0.048, "cubes").is_empty());
+}
+
 #[test]
 fn files_that_are_no_meshes_are_named() {
     wrong(SCENE, &[("bodi.ply", b"")], &["`body.ply` is not there", "did you mean \"bodi.ply\"?"]);

@@ -2,9 +2,13 @@
 
 use super::nodes::select;
 use super::{Typed, motion};
+use crate::reading::captions;
 use crate::reading::collector::Here;
+use crate::reading::words::several;
 use crate::scene::SceneBody;
-use crate::sim::{Assembly, Grip, Motion};
+use crate::scene::file::{NodesFile, Side};
+use crate::sim::{Assembly, Dimension, Grip, Motion};
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -51,6 +55,7 @@ pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec
             let message = format!("`{here}` ends at {until} s, not later than it begins at {} s", typed.from);
             here.to("until").wrong(message, None);
         } else if let Some(nodes) = nodes {
+            warn_of_hinges(&here, &typed.nodes, &nodes, bodies);
             all.push(SceneGrip { here, nodes, from: typed.from, until, motion: Motion::Still });
         }
     }
@@ -69,6 +74,7 @@ pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec
             let message = format!("`{path}` has a single key: nodes grabbed at {from} s would be released at once");
             path.wrong(message, "add a key, or write [[hold]] for nodes that stay where they are");
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
+            warn_of_hinges(&here, &typed.nodes, &nodes, bodies);
             all.push(SceneGrip { here, nodes, from, until, motion });
         }
     }
@@ -88,6 +94,24 @@ pub(super) fn check_steps(scene: &Typed<'_>, step: f64) {
     scene
         .each("grab", &scene.file.grab)
         .for_each(|(here, grab)| motion::check_steps(&grab.path, step, &here.to("path")));
+}
+
+/// Warns of a side of a filled body in space on which all nodes lie on one line: the body turns about it, as its elements are too large for it.
+fn warn_of_hinges(here: &Here<'_>, typed: &NodesFile, nodes: &[Vec<u32>], bodies: &[SceneBody]) {
+    if !matches!(typed, NodesFile::Named(name) if Side::ALL.iter().any(|side| captions::typed(side) == *name)) {
+        return;
+    }
+    let filled = bodies.iter().zip(nodes).filter(|(of, nodes)| of.body.carried().is_some() && !nodes.is_empty());
+    for (of, nodes) in filled.filter(|(of, _)| of.body.dimension() == Dimension::Space) {
+        let places = || nodes.iter().map(|&node| of.body.rest()[node as usize] - of.body.rest()[nodes[0] as usize]);
+        let farthest = places().fold(DVec3::ZERO, |far, at| if at.length() > far.length() { at } else { far });
+        let across = places().map(|at| at.cross(farthest.normalize_or_zero()).length()).fold(0.0, f64::max);
+        if across < 1e-6 * of.body.extent() {
+            let nodes = several(nodes.len() as u64, "node");
+            let message = format!("`{here}` takes {nodes} of {}, on one line, about which it turns", of.in_words());
+            here.to("nodes").warn(message, "fill it with smaller elements, or with cubes, or take the nodes in a box");
+        }
+    }
 }
 
 /// Reports nodes in two constraints at the same time.
