@@ -786,7 +786,7 @@ fn surfaces_that_cross_are_told() {
     let (status, told) = (output.status, output.err);
     assert_eq!(status, Some(0), "{told}");
     let expected = "in “soft”, of “left” and “right” (";
-    assert!(told.contains(expected) && told.contains("take a shorter one, such as 0.002 s"), "{told}");
+    assert!(told.contains(expected) && told.contains("take a shorter step, such as 0.002 s"), "{told}");
     assert_eq!(told.matches("surfaces cross at").count(), 1, "{told}");
     let of = |step: &str| {
         let output = place.run(&format!("simulate fast.toml --set time.step={step} --overwrite -q"));
