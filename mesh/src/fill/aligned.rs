@@ -9,8 +9,6 @@ use glam::DVec3;
 
 /// Both ends of a box are flat if faces there are at least this part of it across an axis.
 const FLAT: f64 = 0.25;
-/// Shorter bodies (sides) are not stretched to whole elements, which would be much flatter than asked for.
-const LEAST: f64 = 1.0;
 /// Points nearer than this to an end, in sides, are on it.
 const ON: f64 = 1e-6;
 
@@ -43,7 +41,8 @@ fn stretch(surface: &Surface, side: f64) -> DVec3 {
     let is_flat = [0, 1, 2].map(|axis| {
         let across = size.element_product() / size[axis];
         let is_end = |end: f64| at(surface, axis, end, ON * side) >= FLAT * across;
-        size[axis] >= LEAST * side && is_end(measures.low[axis]) && is_end(measures.high[axis])
+        // A body thinner than an element keeps its lattice: elements as thin would be flat, or too many.
+        size[axis] >= side && is_end(measures.low[axis]) && is_end(measures.high[axis])
     });
     let along = |axis: usize, cell: f64| match is_flat[axis] {
         // Nodes stand outside by a part of the cell, which is no longer than the side.
