@@ -4,7 +4,7 @@ use super::contact::{End, Felt, Impulses, Obstacle, Source, Stage, Timing};
 use super::crew::Crew;
 use super::grip::Grip;
 use super::limit::SpeedLimit;
-use super::model::Scratch;
+use super::model::{Free, Scratch};
 use super::motion::Interval;
 use super::part::Part;
 use super::state::{Divergence, Memory, Nodes, Runaway, State};
@@ -27,6 +27,8 @@ pub(super) struct System {
     pub(super) impulses: Option<Impulses>,
     /// The work of forces from outside, if there are any.
     pub(super) work: Option<Work>,
+    /// The order of the method, above 2 or not.
+    pub(super) is_fine: bool,
     /// Time step ΔT (s).
     pub(super) step: f64,
     pub(super) crew: Arc<Crew>,
@@ -77,7 +79,7 @@ impl System {
     /// Counts the work of forces from outside from a state on, after some work (J) on each part.
     pub(super) fn renew_work(&mut self, sums: Vec<f64>, state: &State) {
         let (parts, begin) = (self.parts.iter().map(|part| part.nodes.clone()), self.interval(state.steps).begin);
-        self.work = Work::new(&self.surroundings, parts, sums, begin, &state.position);
+        self.work = Work::new(&self.surroundings, parts, self.is_fine, sums, begin, state.nodes());
     }
 
     /// Whether the work of forces from outside is added up before the step after `steps` steps: where they change.
@@ -153,20 +155,25 @@ impl System {
         }
         self.place_held(interval, 1.0, next);
         let mut inverse_mass: Vec<f64> = self.mass.iter().map(|mass| mass.recip()).collect();
+        let mut impulse = vec![DVec3::ZERO; inverse_mass.len()];
         self.held(interval, &next.memory.constraints).for_each(|(_, node, ..)| inverse_mass[node] = 0.0);
         for part in &self.parts {
             let Some(projection) = &part.projection else { continue };
             let (memory, nodes) = (part.memory.clone(), part.nodes.clone());
-            projection.project(
-                &mut next.position[nodes.clone()],
-                &inverse_mass[nodes.clone()],
-                interval.step,
-                &state.memory.model[memory.clone()],
-                &mut next.memory.model[memory],
-            );
-            for node in nodes {
+            let own = Free {
+                position: &mut next.position[nodes.clone()],
+                inverse_mass: &inverse_mass[nodes.clone()],
+                impulse: &mut impulse[nodes.clone()],
+            };
+            let before = &state.memory.model[memory.clone()];
+            projection.project(own, interval.step, before, &mut next.memory.model[memory]);
+            for node in nodes.filter(|&node| inverse_mass[node] > 0.0) {
                 next.velocity[node] = (next.position[node] - state.position[node]) / interval.step;
             }
+        }
+        for (number, node, at, speed) in self.held(interval, &next.memory.constraints) {
+            let pushed = speed + impulse[node] / self.mass[node];
+            self.feel(interval.end, Source::Grip(number), node, [at, pushed], [at, speed]);
         }
         true
     }

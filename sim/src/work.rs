@@ -1,8 +1,10 @@
 //! The work that forces from outside do on nodes, for the balance of energy.
 //!
-//! It is the sum of `½ (F + F\') · ΔP` over the way of the nodes, with the forces at both ends. Where forces are the same over several steps
-//! the sum is exact, and nothing is added up until they change. So the places where it is added up depend on the load and the step alone.
+//! It is the sum of `½ (F + F') · ΔP` over the way of the nodes, with the forces at both ends. For methods of higher order it is Simpson's rule,
+//! of fourth order, with positions in the middle by Hermite's cubic. Where forces are the same over several steps both are exact, and
+//! nothing is added up until they change. So the places where it is added up depend on the load and the step alone.
 
+use super::state::Nodes;
 use super::surroundings::Surroundings;
 use glam::DVec3;
 use std::ops::Range;
@@ -14,6 +16,8 @@ pub(crate) struct Work {
     /// The nodes with loads, in rising order, and the range of those of each part.
     nodes: Vec<u32>,
     parts: Vec<Range<usize>>,
+    /// Whether the method that moves them is of an order above 2.
+    is_fine: bool,
     /// The present account, and the one to which steps go back.
     accounts: Mutex<[Account; 2]>,
 }
@@ -22,35 +26,38 @@ pub(crate) struct Work {
 struct Account {
     /// The work until a time (J), of each part.
     sums: Vec<f64>,
-    /// The positions of the nodes (m) and the forces on them (N) then.
+    /// The positions of the nodes (m), their velocities (m/s) and the forces on them (N) then.
     position: Vec<DVec3>,
+    velocity: Vec<DVec3>,
     force: Vec<DVec3>,
     time: f64,
 }
 
 impl Clone for Work {
     fn clone(&self) -> Self {
-        Self { nodes: self.nodes.clone(), parts: self.parts.clone(), accounts: Mutex::new(self.lock().clone()) }
+        let (nodes, parts, accounts) = (self.nodes.clone(), self.parts.clone(), Mutex::new(self.lock().clone()));
+        Self { nodes, parts, is_fine: self.is_fine, accounts }
     }
 }
 
 impl Work {
-    /// With the work so far (J), from a time (s) and positions (m) on. `None` without loads.
+    /// With the work so far (J), from a time (s) on. `None` without loads. `is_fine` for methods of an order above 2.
     pub(crate) fn new(
         around: &Surroundings,
         parts: impl Iterator<Item = Range<usize>>,
+        is_fine: bool,
         sums: Vec<f64>,
         time: f64,
-        position: &[DVec3],
+        at: Nodes<'_>,
     ) -> Option<Self> {
         if around.loads.is_empty() {
             return None;
         }
-        let nodes = around.loaded(position.len());
+        let nodes = around.loaded(at.position.len());
         let until = |end: usize| nodes.partition_point(|&node| (node as usize) < end);
         let parts = parts.map(|part| until(part.start)..until(part.end)).collect();
-        let work = Self { nodes, parts, accounts: Mutex::default() };
-        let account = Account { sums, time, ..work.account(around, time, position) };
+        let work = Self { nodes, parts, is_fine, accounts: Mutex::default() };
+        let account = Account { sums, ..work.account(around, time, at) };
         *work.lock() = [account.clone(), account];
         Some(work)
     }
@@ -64,35 +71,56 @@ impl Work {
         &self.nodes
     }
 
-    /// Positions and forces of the nodes.
-    fn account(&self, around: &Surroundings, time: f64, position: &[DVec3]) -> Account {
-        let mut forces = vec![DVec3::ZERO; position.len()];
-        around.push(time, position, &mut forces);
-        self.of_nodes(time, position, &forces)
+    /// Positions, velocities and forces of the nodes.
+    fn account(&self, around: &Surroundings, time: f64, at: Nodes<'_>) -> Account {
+        let mut forces = vec![DVec3::ZERO; at.position.len()];
+        around.push(time, at.position, &mut forces);
+        self.of_nodes(time, at, &forces)
     }
 
-    fn of_nodes(&self, time: f64, position: &[DVec3], forces: &[DVec3]) -> Account {
+    fn of_nodes(&self, time: f64, at: Nodes<'_>, forces: &[DVec3]) -> Account {
         let some = |all: &[DVec3]| self.nodes.iter().map(|&node| all[node as usize]).collect();
-        Account { sums: Vec::new(), position: some(position), force: some(forces), time }
+        let velocity = if self.is_fine { some(at.velocity) } else { Vec::new() };
+        Account { sums: Vec::new(), position: some(at.position), velocity, force: some(forces), time }
     }
 
-    /// The sums with the work since the account, until nodes are at other positions (m) with other forces (N).
-    fn until(&self, from: &Account, to: &Account) -> Vec<f64> {
-        let done = |at: usize| 0.5 * (from.force[at] + to.force[at]).dot(to.position[at] - from.position[at]);
+    /// The sums with the work since one account, until another.
+    fn until(&self, around: &Surroundings, from: &Account, to: &Account, nodes: usize) -> Vec<f64> {
+        let way = |at: usize| to.position[at] - from.position[at];
+        let halfway = self.is_fine.then(|| self.halfway(around, from, to, nodes));
+        let done = |at: usize| match &halfway {
+            None => 0.5 * (from.force[at] + to.force[at]).dot(way(at)),
+            // Simpson's rule for force times velocity. Hermite's cubic has the velocity `1.5 ΔP/ΔT - (V + V')/4` halfway.
+            Some(force) => {
+                let [before, after] = [from, to].map(|end| end.velocity[at] * ((to.time - from.time) / 6.0));
+                from.force[at].dot(before) + to.force[at].dot(after) + force[at].dot(way(at) - before - after)
+            }
+        };
         from.sums.iter().zip(&self.parts).map(|(sum, part)| sum + part.clone().map(done).sum::<f64>()).collect()
     }
 
-    /// Adds up the work until a time (s) at which nodes are at other positions (m) with other forces (N).
-    pub(crate) fn add(&self, time: f64, position: &[DVec3], forces: &[DVec3]) {
-        let to = self.of_nodes(time, position, forces);
-        let [account, _] = &mut *self.lock();
-        *account = Account { sums: self.until(account, &to), ..to };
+    /// The forces at the time halfway between two accounts, with nodes where Hermite's cubics between them are then (N).
+    fn halfway(&self, around: &Surroundings, from: &Account, to: &Account, nodes: usize) -> Vec<DVec3> {
+        let (mut position, eighth) = (vec![DVec3::ZERO; nodes], (to.time - from.time) / 8.0);
+        for (at, &node) in self.nodes.iter().enumerate() {
+            let bow = (from.velocity[at] - to.velocity[at]) * eighth;
+            position[node as usize] = 0.5 * (from.position[at] + to.position[at]) + bow;
+        }
+        let nodes = Nodes { position: &position, velocity: &position };
+        self.account(around, 0.5 * (from.time + to.time), nodes).force
     }
 
-    /// The work until a time (s) at which nodes are at some positions (m), of each part (J).
-    pub(crate) fn sums(&self, around: &Surroundings, time: f64, position: &[DVec3]) -> Vec<f64> {
+    /// Adds up the work until a time (s), with the forces then (N).
+    pub(crate) fn add(&self, around: &Surroundings, time: f64, at: Nodes<'_>, forces: &[DVec3]) {
+        let to = self.of_nodes(time, at, forces);
+        let [account, _] = &mut *self.lock();
+        *account = Account { sums: self.until(around, account, &to, at.position.len()), ..to };
+    }
+
+    /// The work until a time (s), of each part (J).
+    pub(crate) fn sums(&self, around: &Surroundings, time: f64, at: Nodes<'_>) -> Vec<f64> {
         let [account, _] = &*self.lock();
-        self.until(account, &self.account(around, time, position))
+        self.until(around, account, &self.account(around, time, at), at.position.len())
     }
 
     /// Keeps the account for [`Self::restore`].
@@ -109,21 +137,27 @@ impl Work {
 
     /// Writes the account for a state.
     pub(crate) fn store(&self, numbers: &mut Vec<f64>) {
-        let [Account { sums, position, time, .. }, _] = &*self.lock();
+        let [Account { sums, position, velocity, time, .. }, _] = &*self.lock();
+        let vectors = position.iter().chain(velocity);
         numbers.clear();
-        numbers.extend(sums.iter().copied().chain([*time]).chain(position.iter().flat_map(DVec3::to_array)));
+        numbers.extend(sums.iter().copied().chain([*time]).chain(vectors.flat_map(DVec3::to_array)));
     }
 
     /// Takes the account of a state. Returns whether it is one of these loads.
     pub(crate) fn load(&self, around: &Surroundings, numbers: &[f64], nodes: usize) -> bool {
         let Some((sums, [time, rest @ ..])) = numbers.split_at_checked(self.parts.len()) else { return false };
         let (vectors, []) = rest.as_chunks::<3>() else { return false };
-        if vectors.len() != self.nodes.len() {
+        if vectors.len() != self.nodes.len() * if self.is_fine { 2 } else { 1 } {
             return false;
         }
-        let mut position = vec![DVec3::ZERO; nodes];
-        self.nodes.iter().zip(vectors).for_each(|(&node, &at)| position[node as usize] = DVec3::from_array(at));
-        let account = Account { sums: sums.to_vec(), ..self.account(around, *time, &position) };
+        let (position, velocity) = vectors.split_at(self.nodes.len());
+        let [position, velocity] = [position, velocity].map(|some| {
+            let mut all = vec![DVec3::ZERO; nodes];
+            self.nodes.iter().zip(some).for_each(|(&node, &vector)| all[node as usize] = DVec3::from_array(vector));
+            all
+        });
+        let at = Nodes { position: &position, velocity: &velocity };
+        let account = Account { sums: sums.to_vec(), ..self.account(around, *time, at) };
         *self.lock() = [account.clone(), account];
         true
     }

@@ -72,6 +72,11 @@ impl Integrator {
         self == Self::DormandPrince
     }
 
+    /// Whether its order is above 2.
+    pub(super) fn is_fine(self) -> bool {
+        matches!(self, Self::Pefrl | Self::RungeKutta | Self::DormandPrince)
+    }
+
     /// Why this method cannot advance a model with damping of masses (1/s), and which method can; `None` if it can.
     pub fn refusal(self, model: &dyn ElasticModel, body: &Arc<Body>, mass_damping: f64) -> Option<&'static str> {
         if self == Self::SemiImplicitEuler {
@@ -280,8 +285,14 @@ impl Step<'_> {
         Ok(!next.position.iter().chain(&next.velocity).eq(&*before))
     }
 
-    /// The memory of kinematic constraints at the end of the step.
+    /// Adds up the work of forces from outside until the step, and writes the memory of kinematic constraints at its end.
     fn begin(&self, state: &State, next: &mut State) {
+        let System { work, surroundings, .. } = self.system;
+        if let Some(work) = work.as_ref().filter(|_| self.system.adds_work(state.steps)) {
+            let mut forces = vec![DVec3::ZERO; state.position.len()];
+            surroundings.push(self.interval.begin, &state.position, &mut forces);
+            work.add(surroundings, self.interval.begin, state.nodes(), &forces);
+        }
         let constraints = &mut next.memory.constraints;
         constraints.clone_from(&state.memory.constraints);
         self.system.change_grips(constraints, |grip, memory| {
@@ -348,15 +359,15 @@ impl Dynamics for ByForces {
         for _ in 0..count {
             let interval = system.interval(state.steps);
             let step = Step { system, interval, limit: limit.at(interval.end) };
+            let work = system.work.as_ref().filter(|_| system.adds_work(state.steps));
+            work.inspect(|work| work.keep());
             step.begin(state, &mut self.next);
-            if let Some(work) = system.work.as_ref().filter(|_| system.adds_work(state.steps)) {
-                let mut forces = vec![DVec3::ZERO; state.position.len()];
-                system.surroundings.push(interval.begin, &state.position, &mut forces);
-                work.add(interval.begin, &state.position, &forces);
-            }
             let done = self.method.step(&step, state, &mut self.next);
             if let Some(impulses) = &system.impulses {
                 if done.is_ok() { impulses.keep() } else { impulses.forget(0) }
+            }
+            if done.is_err() {
+                work.inspect(|work| work.restore());
             }
             done?;
             swap(state, &mut self.next);

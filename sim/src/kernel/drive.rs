@@ -114,12 +114,12 @@ impl Dynamics for ByKernel {
                 let stage = system.contact.as_ref().filter(|_| grips.is_empty())?;
                 stage.alone(at, system.interval(step), most)
             };
-            let push = |step: u64, share: f64, position: &[DVec3], forces: &mut Forces| {
+            let push = |step: u64, share: f64, at: Nodes<'_>, forces: &mut Forces| {
                 loaded().for_each(|node| forces.vectors[node] = DVec3::ZERO);
-                system.surroundings.push(system.interval(step).after(share), position, &mut forces.vectors);
+                system.surroundings.push(system.interval(step).after(share), at.position, &mut forces.vectors);
                 forces.spread(loaded());
                 if let Some(work) = work.filter(|_| share == 0.0) {
-                    work.add(system.interval(step).begin, position, &forces.vectors);
+                    work.add(&system.surroundings, system.interval(step).begin, at, &forces.vectors);
                 }
             };
             let changes = !are_steady(begin);
@@ -130,9 +130,9 @@ impl Dynamics for ByKernel {
                 system.surroundings.push(begin_time, &state.position, &mut steady.vectors);
                 steady.spread(loaded());
                 if let Some(work) = work.filter(|_| system.adds_work(begin)) {
-                    let mut now = state.position.clone();
-                    loaded().for_each(|node| now[node] = rollback.node(node).0);
-                    work.add(begin_time, &now, &steady.vectors);
+                    let mut now = State::new(state.position.clone(), state.velocity.clone());
+                    loaded().for_each(|node| (now.position[node], now.velocity[node]) = rollback.node(node));
+                    work.add(&system.surroundings, begin_time, now.nodes(), &steady.vectors);
                 }
             }
             let around = Around {

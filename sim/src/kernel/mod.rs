@@ -128,8 +128,8 @@ pub(crate) struct Meeting<'a> {
     pub(crate) nodes: &'a [u32],
 }
 
-/// Writes the forces from outside on all nodes (N) after a share of the step of this number, at positions (m).
-pub(crate) type Push<'a> = dyn Fn(u64, f64, &[DVec3], &mut Forces) + Sync + 'a;
+/// Writes the forces from outside on all nodes (N) after a share of the step of this number.
+pub(crate) type Push<'a> = dyn Fn(u64, f64, Nodes<'_>, &mut Forces) + Sync + 'a;
 
 /// Forces from outside on all nodes (N).
 #[derive(Clone, Debug, Default)]

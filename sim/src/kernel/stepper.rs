@@ -250,7 +250,7 @@ pub(crate) struct Rollback {
     /// The numbers among them of those that contact has changed.
     changed: Vec<u32>,
     /// Places of all nodes (m), of which those with loads are up to date.
-    loaded: Vec<DVec3>,
+    loaded: State,
 }
 
 impl Rollback {
@@ -260,7 +260,7 @@ impl Rollback {
     /// Parts in the order of their nodes.
     pub(crate) fn new(parts: Vec<PartStepper>, scheme: Scheme) -> Self {
         let buffers = [(); 2].map(|()| State::default());
-        Self { parts, scheme, steps: 0, kept: None, buffers, changed: Vec::new(), loaded: Vec::new() }
+        Self { parts, scheme, steps: 0, kept: None, buffers, changed: Vec::new(), loaded: State::default() }
     }
 
     /// Reads a state after `steps` steps.
@@ -409,11 +409,12 @@ impl Rollback {
                 if is_read { std::mem::swap(before, after) } else { self.read(nodes, before) }
             }
             if let Some(push) = around.push {
-                self.loaded.resize(count, DVec3::ZERO);
+                self.loaded.position.resize(count, DVec3::ZERO);
+                self.loaded.velocity.resize(count, DVec3::ZERO);
                 for node in around.work.map_or(&[][..], |work| work.nodes()).iter().map(|&node| node as usize) {
-                    self.loaded[node] = self.node(node).0;
+                    (self.loaded.position[node], self.loaded.velocity[node]) = self.node(node);
                 }
-                push(number, shares[0], &self.loaded, &mut forces);
+                push(number, shares[0], self.loaded.nodes(), &mut forces);
             }
             let around = if around.push.is_some() { &Around { forces: forces.columns(), ..*around } } else { around };
             lost = self.each(crew, |part, crew| {

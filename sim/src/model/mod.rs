@@ -132,14 +132,25 @@ pub trait ForceModel: Send + Sync {
 /// Constraints on the nodes of a body, as a pure function of positions and memory. They move nodes in place of forces.
 pub trait Projection: Send + Sync {
     /// Moves nodes that have gone freely for a step (s), none by more than its constraints demand in that step, from `position` (m) to the end of
-    /// the step. `inverse_mass` (1/kg) is zero for nodes that a kinematic constraint holds. Writes every entry of the `next` memory of the model.
-    fn project(&self, position: &mut [DVec3], inverse_mass: &[f64], step: f64, memory: &[f64], next: &mut [f64]);
+    /// the step. Writes every entry of the `next` memory of the model.
+    fn project(&self, nodes: Free<'_>, step: f64, memory: &[f64], next: &mut [f64]);
 
     /// How many times as much as its stiffness says the body gives way in uniform strain, with a step (s).
     fn softening(&self, step: f64) -> f64 {
         let _ = step;
         1.0
     }
+}
+
+/// The nodes of a body that have gone freely for a step.
+#[derive(Debug)]
+pub struct Free<'a> {
+    /// The position of each node (m).
+    pub position: &'a mut [DVec3],
+    /// The inverse mass of each node (1/kg), zero for nodes that a kinematic constraint holds.
+    pub inverse_mass: &'a [f64],
+    /// The impulse on each node that is held (N s), to which a [`Projection`] adds its own.
+    pub impulse: &'a mut [DVec3],
 }
 
 /// Forces that are prepared at their first use. Vectorised steps need none, and forces of large bodies take several times the

@@ -4,7 +4,7 @@ use super::World;
 use crate::contact::Obstacle;
 use crate::grip::Grip;
 use crate::load::Load;
-use crate::state::{State, Status};
+use crate::state::Status;
 use crate::surroundings::{Surroundings, WrongSurroundings, check_vectors};
 use crate::system::System;
 use glam::DVec3;
@@ -117,11 +117,11 @@ impl World {
     /// The work of forces from outside so far on each part (J); `None` without them.
     pub(super) fn work(&self) -> Option<Vec<f64>> {
         let System { work, surroundings, .. } = &self.system;
-        let (work, State { position, memory, steps, .. }) = (work.as_ref()?, &self.state);
+        let (work, state) = (work.as_ref()?, &self.state);
         if self.dynamics.is_recorded() {
-            work.load(surroundings, &memory.loads, position.len());
+            work.load(surroundings, &state.memory.loads, state.position.len());
         }
-        Some(work.sums(surroundings, self.system.interval(*steps).begin, position))
+        Some(work.sums(surroundings, self.system.interval(state.steps).begin, state.nodes()))
     }
 
     /// Takes the state out of the code that advances it. Returns the work of forces from outside until now on each part (J).

@@ -199,8 +199,9 @@ impl World {
             Some((kernels, scheme)) => Box::new(ByKernel::new(&parts, kernels, scheme)),
             None => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
-        let mut system =
-            System { parts, mass, surroundings, contact: None, impulses: None, work: None, step, crew: Arc::default() };
+        let (contact, impulses, work, crew) = Default::default();
+        let is_fine = integrator.is_fine();
+        let mut system = System { parts, mass, surroundings, contact, impulses, work, is_fine, step, crew };
         system.renew_contact();
         system.renew_work(vec![0.0; system.parts.len()], &state);
         system.work.iter().for_each(|work| work.store(&mut state.memory.loads));

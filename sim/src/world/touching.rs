@@ -10,7 +10,6 @@ use crate::state::{Runaway, State};
 use crate::surroundings::Surroundings;
 use crate::system::System;
 use crate::world::Moment;
-use glam::DVec3;
 
 impl World {
     /// Keeps the mean forces of contact and of kinematic constraints from now on, over intervals of time: an interval ends with the step nearest
@@ -57,17 +56,10 @@ impl World {
         }
     }
 
-    /// The mean forces in the last interval that has ended, of each obstacle, each constraint and then each body on each body, NaN for
-    /// constraints of models that move their nodes themselves; `None` before the first end, and if they are [not kept](Self::keep_reactions).
+    /// The mean forces in the last interval that has ended, of each obstacle, each constraint and then each body on each body; `None` before the
+    /// first end, and if they are [not kept](Self::keep_reactions).
     pub fn reactions(&self) -> Option<Vec<Reaction>> {
-        let mut forces = self.system.impulses.as_ref()?.forces(&self.state.memory.contact)?;
-        // Models that move nodes themselves do not say with which impulses.
-        let is_known =
-            |one: &Reaction| !matches!(one.from, Source::Grip(_)) || self.system.parts[one.on].projection.is_none();
-        for one in forces.iter_mut().filter(|one| !is_known(one)) {
-            (one.force, one.torque) = (DVec3::NAN, DVec3::NAN);
-        }
-        Some(forces)
+        self.system.impulses.as_ref()?.forces(&self.state.memory.contact)
     }
 
     /// Where bodies touch obstacles, other bodies and themselves in the present state, by positions alone. Nodes touch an obstacle at a

@@ -3,7 +3,7 @@
 use super::{Elements, Fit, ShapeBased, Stretch, mean, moment_at_rest};
 use crate::body::Body;
 use crate::material::spread;
-use crate::model::Projection;
+use crate::model::{Free, Projection};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -15,32 +15,32 @@ impl ShapeBased {
 }
 
 impl Projection for Elements {
-    fn project(&self, position: &mut [DVec3], inverse_mass: &[f64], step: f64, memory: &[f64], next: &mut [f64]) {
+    fn project(&self, mut all: Free<'_>, step: f64, memory: &[f64], next: &mut [f64]) {
         let (width, mut slopes, mut globals) = (self.solver.width(), Vec::new(), 0.0);
         for element in 0..self.body.elements.len() {
             let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
-            let own = Moved { nodes, inverse_mass, compliance: 1.0 / (k * step * step) };
+            let own = Moved { nodes, compliance: 1.0 / (k * step * step), step };
             let next = &mut next[element * width..][..width];
             let Fit { centre, at_rest, rotation, is_global } =
-                self.fit(element, position, self.of(element, memory), next);
+                self.fit(element, all.position, self.of(element, memory), next);
             globals += f64::from(u8::from(is_global));
             let stretch = self.stretch(element, at_rest);
             slopes.clear();
             let mut squares = 0.0;
             for (&node, &rest) in nodes.iter().zip(rest) {
-                let (r, turned) = (position[node as usize] - centre, rotation * rest);
+                let (r, turned) = (all.position[node as usize] - centre, rotation * rest);
                 let affine = stretch.map_or(r, |Stretch { map, .. }| map * rest);
                 let (bent, off) = (r - affine, affine - turned);
                 slopes.push(bent * self.model.bending + off);
                 squares += self.model.bending * bent.length_squared() + off.length_squared();
             }
-            own.project(squares, &slopes, position);
+            own.project(squares, &slopes, &mut all);
             if self.model.volume(self.body.dimension) > 0.0 {
-                let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
+                let at_rest = moment_at_rest(rest, nodes, mean(nodes, all.position), all.position);
                 let Some(Stretch { pressure, volume, .. }) = self.stretch(element, at_rest) else { continue };
                 slopes.clear();
                 slopes.extend(rest.iter().map(|&rest| pressure * rest));
-                own.project(volume, &slopes, position);
+                own.project(volume, &slopes, &mut all);
             }
         }
         if self.solver.counts()
@@ -68,22 +68,29 @@ impl Projection for Elements {
 /// The nodes of an element that a constraint moves.
 struct Moved<'a> {
     nodes: &'a [u32],
-    inverse_mass: &'a [f64],
     /// `α̃ = 1/(k ΔT²)` (1/kg).
     compliance: f64,
+    /// ΔT (s).
+    step: f64,
 }
 
 impl Moved<'_> {
     /// Projects the constraint `C` with the energy `k/2 C²`, given `C²` (m²) and `C ∇C` (m) of each node. With a multiplier that begins
-    /// at 0, `λ = −C / (Σ w |∇C|² + α̃)` and `Δx = w ∇C λ`.
-    fn project(&self, squared: f64, slopes: &[DVec3], position: &mut [DVec3]) {
+    /// at 0, `λ = −C / (Σ w |∇C|² + α̃)` and `Δx = w ∇C λ`. The impulse on a node is `∇C λ/ΔT`.
+    fn project(&self, squared: f64, slopes: &[DVec3], all: &mut Free<'_>) {
+        let Free { position, inverse_mass, impulse } = all;
         let of_nodes = || self.nodes.iter().map(|&node| node as usize).zip(slopes);
-        let sum: f64 = of_nodes().map(|(node, slope)| self.inverse_mass[node] * slope.length_squared()).sum();
+        let sum: f64 = of_nodes().map(|(node, slope)| inverse_mass[node] * slope.length_squared()).sum();
         let below = sum + self.compliance * squared;
         // Where the constraint is met it has no direction, and where all nodes are held and it is rigid, nothing moves.
         if below > 0.0 {
             let share = squared / below;
-            of_nodes().for_each(|(node, &slope)| position[node] -= slope * (self.inverse_mass[node] * share));
+            for (node, &slope) in of_nodes() {
+                position[node] -= slope * (inverse_mass[node] * share);
+                if inverse_mass[node] == 0.0 {
+                    impulse[node] -= slope * (share / self.step);
+                }
+            }
         }
     }
 }
