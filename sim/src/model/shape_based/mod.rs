@@ -81,7 +81,7 @@ pub struct Parameters {
     /// `robust`; the paper's method is `arctangent`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationReading>,
-    /// The velocity that the damping of Eq. (4) acts on.
+    /// The velocity that the damping of Eq. (4) acts on. Beside it, `mass_damping` of the scene brakes all motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_of: Option<DampingReading>,
     /// The strain at which an element breaks: it is taken out for good. It is the `"strain"` that `view.colour` shows. Default: elements never break.
