@@ -67,19 +67,19 @@ pub struct Cage {
     pub volumes: Option<Vec<f64>>,
     /// The volume that lies in several shells of a closed surface, which cross or lie in each other (m³). It is filled once.
     pub overlap: f64,
+    /// Where the body is thinner than elements.
+    pub thin: Thin,
 }
 
-impl Cage {
-    /// The elements filled in part that share no node with a full one: the body is thinner than elements there.
-    pub fn thin(&self) -> Vec<usize> {
-        let Some(filled) = &self.filled else { return Vec::new() };
-        let mut is_firm = vec![false; self.nodes.len()];
-        for (nodes, _) in self.elements.iter().zip(filled).filter(|(_, filled)| **filled == 1.0) {
-            nodes.iter().for_each(|&node| is_firm[node as usize] = true);
-        }
-        let is_thin = |&element: &usize| !self.elements[element].iter().any(|&node| is_firm[node as usize]);
-        (0..self.elements.len()).filter(is_thin).collect()
-    }
+/// The cubes of a lattice in which a body is thinner than they are: each holds a part of it, and has no neighbour that is full.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Thin {
+    /// Their number.
+    pub cubes: usize,
+    /// The number of all cubes with a part of the body, thin or not. Separate parts in one cube count one each.
+    pub of: usize,
+    /// The sum of the parts of thin ones that are inside, each at most 1.
+    pub filled: f64,
 }
 
 /// A filled surface.

@@ -17,7 +17,7 @@ mod volume;
 mod weld;
 
 pub use edges::Sets;
-pub use fill::{Cage, Fill, FillError, Filled, fill};
+pub use fill::{Cage, Fill, FillError, Filled, Thin, fill};
 pub use read::{
     Beside, CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, converter, read, read_cells, read_cells_with,
     read_list, read_pieces,

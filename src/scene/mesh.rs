@@ -10,7 +10,7 @@ use crate::reading::words::{count, hexadecimal, list, nearest, several, short};
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
-use localshape_mesh::{self as mesh, Cage, Flaws, Format, Mesh, ReadError, Sets};
+use localshape_mesh::{self as mesh, Cage, Flaws, Format, Mesh, ReadError, Sets, Thin};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;
@@ -21,7 +21,7 @@ fn endings() -> Vec<&'static str> {
     Format::ALL.into_iter().flat_map(Format::endings).copied().collect()
 }
 
-/// A surface is said to be thinner than its elements if this part of them is where it is.
+/// A surface is said to be thinner than its elements if this part of the cells is where it is.
 const THIN: f64 = 0.3;
 
 /// The number of cells along the longest side of a filled surface, unless a scene tells another.
@@ -211,13 +211,12 @@ pub(crate) fn doubts(cage: &Cage, volume: f64, side: f64, longest: f64, is_typed
         );
         doubts.push((message, "unite them in the program that made it, unless the elements are right".to_owned()));
     }
-    let thin = cage.thin();
-    if !thin.is_empty() && thin.len() as f64 >= THIN * cage.elements.len() as f64 {
-        let parts = cage.filled.iter().flat_map(|filled| thin.iter().map(|&element| filled[element]));
-        let thickness = side * parts.sum::<f64>() / thin.len() as f64;
-        let [number, all] = [thin.len(), cage.elements.len()].map(|number| count(number as u128));
+    let Thin { cubes, of, filled } = cage.thin;
+    if cubes > 0 && cubes as f64 >= THIN * of as f64 {
+        let thickness = side * filled / cubes as f64;
+        let [cubes, of] = [cubes, of].map(|number| count(number as u128));
         let message =
-            format!("is thinner than its elements where {number} of {all} are, and bends less there than it would");
+            format!("is thinner than its elements in {cubes} of {of} cells, and does not bend there as it would");
         // Two elements across it.
         let finer = match is_typed {
             true => format!("side = {} or less", short(0.5 * thickness)),

@@ -278,8 +278,12 @@ fn flaws_are_told_with_their_number() {
     let message = "`body.obj` has 1 edge of three triangles or more, where parts may be joined or not";
     assert!(warned(&touching).starts_with(message), "{}", warned(&touching));
     let plate = CUBE.replace(" 1\n", " 0.03\n").replace(" 1\nf", " 0.03\nf");
-    let message = "`body.obj` is thinner than its elements where 64 of 64 are, and bends less there than it would";
-    assert_eq!(warned(&plate), message);
+    let message = "`body.obj` is thinner than its elements in 64 of 64 cells, and does not bend there as it would";
+    for fill in ["cubes", "graded", "tetrahedra", "polyhedra"] {
+        let scene = with("body.obj", &format!("fill = {{ with = '{fill}', cells = 8 }}"));
+        let scene = loaded(&scene, &[("body.obj", &plate)]);
+        assert!(scene.warnings.iter().any(|one| one.message == message), "{fill}: {:?}", scene.warnings);
+    }
     let help = |lines: &str| {
         let scene = loaded(&with("body.obj", lines), &[("body.obj", &plate)]);
         scene.warnings[0].help.clone().unwrap()

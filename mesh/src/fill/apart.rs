@@ -56,6 +56,9 @@ pub(super) fn fill(
         cage.elements.append(&part.cage.elements, first);
         cage.volumes.iter_mut().zip(&part.cage.volumes).for_each(|(all, own)| all.extend(own));
         cage.overlap += part.cage.overlap;
+        cage.thin.cubes += part.cage.thin.cubes;
+        cage.thin.of += part.cage.thin.of;
+        cage.thin.filled += part.cage.thin.filled;
     }
     whole.weights = Default::default();
     for ((&part, &number), point) in part_of.iter().zip(&numbers).zip(&mut surface.points) {

@@ -45,6 +45,7 @@ pub(super) fn fill(
         return refuse(cells.len() / joined);
     }
     let parts = scene.parts(&cells);
+    let thin = parts.thin();
     let mut nodes = Nodes::new(parts.corners.len());
     let Graded { elements, filled, element_of, volumes } = graded::joined(&scene, &parts, is_graded, &mut nodes);
     if elements.len() > most {
@@ -54,7 +55,7 @@ pub(super) fn fill(
     let volumes = volumes.map(|all| all.into_iter().map(|volume| volume * side * side * side).collect());
     let overlap = overlap(&scene, &cells) * side * side * side;
     let filled = filled.iter().any(|&filled| filled < 1.0).then_some(filled);
-    let cage = Cage { nodes: nodes.places, elements, filled, volumes, overlap, ..Cage::default() };
+    let cage = Cage { nodes: nodes.places, elements, filled, volumes, overlap, thin, ..Cage::default() };
     Ok(Filled { cage, surface, weights, flaws })
 }
 

@@ -3,7 +3,7 @@
 mod crossing;
 
 use super::parts::{Parted, Scene};
-use super::{FillError, clip, cubes, lattice};
+use super::{FillError, Thin, clip, cubes, lattice};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 pub(super) use crossing::Cuts;
@@ -58,6 +58,15 @@ pub(super) struct Lattice {
     known: Mutex<HashMap<[u64; 3], bool>>,
     /// Where edges cross the surface.
     crossings: Vec<(u64, f64)>,
+}
+
+/// What of the cubes of a lattice is inside.
+pub(super) struct Within {
+    /// The part of each, with x fastest, then y, then z.
+    pub(super) cubes: Vec<f64>,
+    /// The volume that lies in several shells (m³).
+    pub(super) overlap: f64,
+    pub(super) thin: Thin,
 }
 
 impl Lattice {
@@ -176,11 +185,11 @@ impl Lattice {
         (lattice, Surface { points, triangles: self.surface.triangles.clone(), ..Surface::default() })
     }
 
-    /// The part of each cube that is inside, with x fastest, then y, then z, and the volume that lies in several shells (m³).
+    /// What is inside.
     ///
     /// # Errors
-    /// If nothing is inside.
-    pub(super) fn filled(&self, flaws: &Flaws) -> Result<(Vec<f64>, f64), FillError> {
+    /// If nothing is.
+    pub(super) fn filled(&self, flaws: &Flaws) -> Result<Within, FillError> {
         let (lattice, scaled) = self.in_cubes();
         let (inside, pieces) = (Inside::new(&scaled), clip::pieces(&scaled, &lattice));
         let scene = Scene::new(&scaled, &lattice, &inside, &pieces);
@@ -190,11 +199,8 @@ impl Lattice {
             let cube = IVec3::from_array(lattice.cell(full.cell).map(|at| at as i32 + 1));
             filled[self.cube(cube)] = full.filled;
         }
-        Ok((filled, cubes::overlap(&scene, &cells) * self.side * self.side * self.side))
-    }
-
-    pub(super) fn is_closed(&self) -> bool {
-        self.inside.caps().is_empty()
+        let overlap = cubes::overlap(&scene, &cells) * self.side * self.side * self.side;
+        Ok(Within { cubes: filled, overlap, thin: scene.parts(&cells).thin() })
     }
 
     /// The place of a cube in lists.

@@ -12,7 +12,7 @@ mod spread;
 #[cfg(test)]
 mod tests;
 
-use super::cuts::{FAR, Lattice};
+use super::cuts::{FAR, Lattice, Within};
 use super::draft::Draft;
 use crate::edges::pieces;
 use crate::{Cage, FillError, Flaws, Surface};
@@ -40,7 +40,7 @@ const CLOSE: f64 = 1e-10;
 /// Elements that carry a surface, and its weights.
 ///
 /// `build` makes the elements. It is given how often each place of the lattice was marked, at first never, whether it may leave out
-/// elements on trial, and the part of each cube that is inside, if something is marked. While points of the surface are far from all
+/// elements on trial, and the part of each cube that is inside. While points of the surface are far from all
 /// elements, or follow elements that do not hang together by faces with those of the rest of their piece of the surface, the lattice
 /// is marked there, and has elements that may be filled in part. Where that is not enough marks go on along the surface, twice as
 /// far each time. What is lost where the lattice is marked already, and after marks have gone on, stays lost.
@@ -51,16 +51,15 @@ pub(super) fn carry(
     surface: &Surface,
     flaws: &Flaws,
     lattice: &Lattice,
-    build: impl Fn(&[u8], bool, Option<&[f64]>) -> Result<Draft, FillError>,
+    build: impl Fn(&[u8], bool, &[f64]) -> Result<Draft, FillError>,
 ) -> Result<(Cage, Weights), FillError> {
     let (pieces, _) = pieces(surface.points.len(), &surface.triangles);
     let mut wide = vec![0u8; lattice.len()];
-    // Shells of a closed surface may lie in each other.
-    let mut inside = if lattice.is_closed() { Some(lattice.filled(flaws)?) } else { None };
+    let Within { cubes: inside, overlap, thin } = lattice.filled(flaws)?;
     let mut touched = Vec::new();
     let (mut round, mut is_bold) = (0, true);
     while round < ROUNDS {
-        let draft = build(&wide, is_bold, inside.as_ref().map(|(inside, _)| &inside[..]))?;
+        let draft = build(&wide, is_bold, &inside)?;
         let body = body(&draft.cage);
         let fan = Fan::new(&body);
         let found = fan.locate(&surface.points, lattice.side, VERY_FAR);
@@ -77,15 +76,10 @@ pub(super) fn carry(
         let (places, of_places): (Vec<DVec3>, Vec<u32>) =
             surface.triangles.iter().filter(has_lost).flat_map(samples).unzip();
         if places.is_empty() {
-            let (inside, overlap) = inside.unwrap_or_default();
             let filled = fan.filled(&draft.is_wide, lattice, &inside);
             let (cage, weights) = hung.finished(draft.cage, filled, &fan, &found);
-            return Ok((Cage { overlap, ..cage }, weights));
+            return Ok((Cage { overlap, thin, ..cage }, weights));
         }
-        if inside.is_none() {
-            inside = Some(lattice.filled(flaws)?);
-        }
-        let inside = inside.as_ref().map_or(&[][..], |(inside, _)| &inside[..]);
         // What was left out may be missing.
         is_bold = !(draft.is_bold && round > 1);
         if !is_bold {
@@ -104,7 +98,7 @@ pub(super) fn carry(
         }
         if round > 0 {
             if touched.is_empty() {
-                touched = lattice.touched(surface, inside);
+                touched = lattice.touched(surface, &inside);
             }
             let most = lattice.marks();
             let mut front: Vec<_> = (0..before.len()).filter(|&point| before[point] == most).collect();

@@ -7,6 +7,7 @@
 
 mod joining;
 
+use super::Thin;
 use super::clip::{self, Piece};
 use super::facet::Facet;
 use super::lattice::{Full, Lattice, corner};
@@ -31,6 +32,20 @@ pub(super) struct Parts {
     pub(super) corners: Vec<u32>,
     /// The copy of each piece of the surface.
     pub(super) copy_of: Vec<u32>,
+}
+
+impl Parts {
+    /// The copies filled in part that share no corner with a full one, for any kind of elements: those filled in part by others, such as cut
+    /// ones, may be none.
+    pub(super) fn thin(&self) -> Thin {
+        let of = || self.copies.iter().zip(self.corners.as_chunks::<8>().0);
+        let mut is_firm = vec![false; self.corners.len()];
+        of().filter(|(copy, _)| copy.filled == 1.0)
+            .for_each(|(_, own)| own.iter().for_each(|&corner| is_firm[corner as usize] = true));
+        let thin = of().filter(|(_, own)| !own.iter().any(|&corner| is_firm[corner as usize]));
+        let filled = thin.map(|(copy, _)| copy.filled);
+        Thin { cubes: filled.clone().count(), of: self.copies.len(), filled: filled.sum() }
+    }
 }
 
 /// A surface in a lattice.

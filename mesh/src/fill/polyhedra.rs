@@ -208,14 +208,14 @@ impl<'l> Cutting<'l> {
     }
 
     /// All cubes with a corner inside and those of thin parts, or their number if there are more than `most`. `filled` is the part of
-    /// each cube that is inside, known if there are thin parts.
-    fn draft(&self, filled: Option<&[f64]>, most: usize) -> Result<Draft, usize> {
+    /// each cube that is inside.
+    fn draft(&self, filled: &[f64], most: usize) -> Result<Draft, usize> {
         let draft = self.elements(filled, most, false)?;
         if draft.is_wide.is_empty() { self.elements(filled, most, true) } else { Ok(draft) }
     }
 
     /// The elements; if they are alone, those that are small, too.
-    fn elements(&self, filled: Option<&[f64]>, most: usize, is_alone: bool) -> Result<Draft, usize> {
+    fn elements(&self, filled: &[f64], most: usize, is_alone: bool) -> Result<Draft, usize> {
         let mut draft = Draft::new(true, self.lattice.len() + self.cuts.parts.len() + self.inner.len(), most);
         let mut nodes = Vec::new();
         for cube in 0..self.lattice.cubes.element_product() {
@@ -226,7 +226,7 @@ impl<'l> Cutting<'l> {
             };
             let has_inside = inside().next().is_some();
             let thin = self.thin[self.lattice.index(low)];
-            let is_filled = || filled.is_some_and(|filled| filled[cube as usize] > embed::LEAST * CLOSE);
+            let is_filled = || filled[cube as usize] > embed::LEAST * CLOSE;
             // Surfaces laid on each other enclose nothing, and their points are carried all the same.
             if !(has_inside || thin > 1 || thin == 1 && is_filled()) {
                 continue;

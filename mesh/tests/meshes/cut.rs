@@ -2,7 +2,7 @@
 
 use crate::common::near::outside;
 use crate::common::{ball, block, ring, scan, together};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3, Vec3Swizzles};
 use localshape_mesh::{Fill, Filled, Format, Limits, Mesh, Surface, fill, read};
 use localshape_sim::geometry::{around, bounds, volumes_at_rest};
 use localshape_sim::{Body, Solids};
@@ -335,6 +335,41 @@ fn a_sheet_thinner_than_the_elements_is_filled_in_part() {
         let (filled, body) = filled(&surface, with);
         assert!(filled.cage.filled.is_some());
         assert_filled(&filled, &body, 0.05);
+    }
+}
+
+/// An I-beam along x, ten cells of a twentieth high and five wide.
+fn i_beam(web: f64, flange: f64) -> Surface {
+    let [x, y, z] = [0.5, 0.25, 0.125];
+    let foot = block(DVec3::new(-x, -y, -z), DVec3::new(x, flange - y, z));
+    let head = block(DVec3::new(-x, y - flange, -z), DVec3::new(x, y, z));
+    // The web ends in the flanges: what lies in both counts once.
+    let web = block(DVec3::new(-x, 0.01 - y, -0.5 * web), DVec3::new(x, y - 0.01, 0.5 * web));
+    together(&[foot, head, web])
+}
+
+/// Elements that are cut are full where a body is thinner than a cell, and still do not bend as it does.
+#[test]
+fn all_fills_tell_where_a_body_is_thinner_than_a_cell() {
+    let side = 0.05;
+    let tilt = DQuat::from_xyzw(0.2, 0.3, -0.1, 0.9).normalize();
+    let mut tilted = block(DVec3::ZERO, DVec3::new(1.0, 0.033, 0.7));
+    tilted.points.iter_mut().for_each(|point| *point = tilt * *point);
+    let all = DVec3::new(1.0, 0.045, 0.7);
+    for (name, surface, least, most) in [
+        ("web", i_beam(0.033, 0.05), 0.3, 0.5),
+        ("plate", block(DVec3::ZERO, all), 1.0, 1.0),
+        ("bar", block(DVec3::ZERO, all.xyy()), 1.0, 1.0),
+        ("tilted", tilted, 1.0, 1.0),
+        ("sturdy", i_beam(0.11, 0.11), 0.0, 0.0),
+        ("block", block(DVec3::ZERO, 3.0 * all), 0.0, 0.0),
+        ("ball", ball(DVec3::ZERO, 0.5, 96), 0.0, 0.0),
+    ] {
+        for with in both(side).into_iter().chain([Fill::Cubes { side }, Fill::Graded { side }]) {
+            let thin = fill(&surface, with, MOST).unwrap().cage.thin;
+            let part = thin.cubes as f64 / thin.of as f64;
+            assert!((least..=most).contains(&part), "{name}, {with:?}: {thin:?}");
+        }
     }
 }
 

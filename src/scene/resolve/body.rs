@@ -145,7 +145,9 @@ fn generated(table: &BodyTable<'_>, generator: Generator<'_>) -> Option<SceneBod
 /// A surface with the elements that fill it, whose edges have a length (m).
 fn filled(table: &BodyTable<'_>, of: Filled, side: f64) -> Option<SceneBody> {
     let (file, before) = (table.file, table.here.report.total());
-    let Filled { cage: Cage { nodes, elements, filled, convex, groups, volumes, overlap }, surface, weights, .. } = of;
+    let Filled {
+        cage: Cage { nodes, elements, filled, convex, groups, volumes, overlap, .. }, surface, weights, ..
+    } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let measures = surface.measures();
     let carried = Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights });
