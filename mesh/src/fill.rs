@@ -1,6 +1,7 @@
 //! Surfaces filled with elements.
 
 mod aligned;
+mod allowed;
 mod apart;
 mod clip;
 mod cubes;
@@ -18,6 +19,7 @@ mod tighten;
 mod union;
 
 use super::{Flaws, Group, Surface};
+use allowed::{Allowed, JOINED};
 use glam::DVec3;
 use localshape_sim::{IndexLists, Weights};
 
@@ -48,6 +50,28 @@ pub enum Fill {
         /// The side of the uncut cubes.
         side: f64,
     },
+}
+
+impl Fill {
+    fn side(self) -> f64 {
+        let (Self::Cubes { side } | Self::Graded { side } | Self::Tetrahedra { side } | Self::Polyhedra { side }) =
+            self;
+        side
+    }
+
+    /// Whether elements end at the surface.
+    fn is_cut(self) -> bool {
+        matches!(self, Self::Tetrahedra { .. } | Self::Polyhedra { .. })
+    }
+
+    /// About how many elements a cube of the lattice has.
+    fn each(self) -> f64 {
+        match self {
+            Self::Cubes { .. } | Self::Polyhedra { .. } => 1.0,
+            Self::Graded { .. } => 1.0 / JOINED as f64,
+            Self::Tetrahedra { .. } => 12.0,
+        }
+    }
 }
 
 /// Elements that contain a surface.
@@ -120,9 +144,11 @@ impl FillError {
 /// If the surface has no inside, or more elements would be needed.
 pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillError> {
     let (mut surface, flaws) = surface.mended();
-    let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
-    lattice::check(&surface, fill, side, most)?;
-    let is_cut = matches!(fill, Fill::Tetrahedra { .. } | Fill::Polyhedra { .. });
+    if surface.triangles.is_empty() {
+        return Err(FillError::new("has no face with an area", "use a file with faces"));
+    }
+    let (side, is_cut) = (fill.side(), fill.is_cut());
+    allowed::check(&surface.measures(), fill, &Allowed::new(std::slice::from_ref(&surface), fill, most))?;
     if is_cut {
         check_joined(&surface, &flaws)?;
     }
@@ -130,15 +156,19 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let alone = |surface, corner| match fill {
         Fill::Cubes { .. } => cubes::fill(surface, flaws, side, corner, false, most),
         Fill::Graded { .. } => cubes::fill(surface, flaws, side, corner, true, most),
-        Fill::Polyhedra { .. } => aligned::fill(surface, side, |surface| polyhedra::fill(surface, flaws, side, most)),
-        Fill::Tetrahedra { .. } => aligned::fill(surface, side, |surface| tetrahedra::fill(surface, flaws, side, most)),
+        Fill::Polyhedra { .. } => {
+            aligned::fill(surface, fill, most, |surface, allowed| polyhedra::fill(surface, flaws, side, allowed))
+        }
+        Fill::Tetrahedra { .. } => {
+            aligned::fill(surface, fill, most, |surface, allowed| tetrahedra::fill(surface, flaws, side, allowed))
+        }
     };
     let parts = if flaws.pieces > 1 { apart::parts(&surface) } else { Ok((Vec::new(), 1)) };
     let filled = match parts {
         Ok(parts) if parts.1 > 1 => {
             let corner = lattice::Lattice::origin(&surface.measures(), side);
             let part = |part| alone(part, Some(corner)).map(|part| if is_cut { apart::weighed(part) } else { part });
-            match apart::fill(surface.clone(), parts, side, most, part) {
+            match apart::fill(surface.clone(), parts, fill, most, part) {
                 // A part may have no inside by itself. Cubes tell in each cell what stands apart.
                 Err(_) if !is_cut => alone(surface, None),
                 filled => filled,

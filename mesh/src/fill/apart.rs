@@ -1,8 +1,8 @@
 //! Parts of a surface that stand apart, each filled by itself.
 
+use super::allowed::Allowed;
 use super::embed::body;
-use super::lattice::too_many;
-use super::{Cage, FillError, Filled};
+use super::{Cage, Fill, FillError, Filled};
 use crate::Surface;
 use crate::boxes::Boxes;
 use crate::edges::{Sets, pieces};
@@ -18,13 +18,10 @@ use robust::{Coord3D, orient3d};
 pub(super) fn fill(
     mut surface: Surface,
     (part_of, count): (Vec<u32>, usize),
-    side: f64,
+    with: Fill,
     most: usize,
     fill: impl Fn(Surface) -> Result<Filled, FillError> + Sync,
 ) -> Result<Filled, FillError> {
-    if count > most {
-        return Err(too_many(&surface.measures(), side, count as f64, most, "at least "));
-    }
     let mut parts = vec![Surface::default(); count];
     let mut numbers = Vec::with_capacity(surface.points.len());
     for (&part, &point) in part_of.iter().zip(&surface.points) {
@@ -35,12 +32,17 @@ pub(super) fn fill(
     for &of in &surface.triangles {
         parts[part_of[of[0] as usize] as usize].triangles.push(of.map(|point| numbers[point as usize]));
     }
+    let allowed = Allowed::new(&parts, with, most);
+    if count > most {
+        return Err(allowed.too_many(with.side(), count as f64, "at least "));
+    }
+    allowed.check()?;
     // The first error is told, whichever part is filled first.
     let filled: Vec<_> = parts.into_par_iter().map(&fill).collect();
     let filled = filled.into_iter().collect::<Result<Vec<_>, _>>()?;
     let needed: usize = filled.iter().map(|part| part.cage.elements.len()).sum();
     if needed > most {
-        return Err(too_many(&surface.measures(), side, needed as f64, most, ""));
+        return Err(allowed.too_many(with.side(), needed as f64, ""));
     }
     let mut whole = Filled { surface: Surface::default(), ..filled[0].clone() };
     let mut firsts = vec![0];

@@ -1,11 +1,12 @@
 //! Cubes of a lattice.
 
+use super::allowed::{Allowed, JOINED};
 use super::clip::{self, Piece};
 use super::draft::Nodes;
 use super::graded::{self, Graded};
-use super::lattice::{CORNERS, Cell, JOINED, Lattice, corner, too_many};
+use super::lattice::{CORNERS, Cell, Lattice, corner};
 use super::parts::{LEAST, Parted, Parts, Patches, Scene, bounded};
-use super::{Cage, FillError, Filled};
+use super::{Cage, Fill, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::DVec3;
@@ -34,12 +35,12 @@ pub(super) fn fill(
     let scene = Scene::new(&scaled, &lattice, &inside, &pieces);
     let cells = cells(&scene, &flaws)?;
     let refuse = |needed: usize| {
-        let mut measures = surface.measures();
+        let mut allowed = Allowed::new(std::slice::from_ref(&surface), Fill::Cubes { side }, most);
         if is_graded {
             // Cubes at the surface are not joined, and most are there unless the body is many sides thick.
-            measures.volume = 0.0;
+            allowed.parts[0].measures.volume = 0.0;
         }
-        Err(too_many(&measures, side, needed as f64, most, ""))
+        Err(allowed.too_many(side, needed as f64, ""))
     };
     if cells.len() / joined / joined > most {
         return refuse(cells.len() / joined);

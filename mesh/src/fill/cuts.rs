@@ -2,8 +2,9 @@
 
 mod crossing;
 
+use super::allowed::{Allowed, check};
 use super::parts::{Parted, Scene};
-use super::{FillError, Thin, clip, cubes, lattice};
+use super::{Fill, FillError, Thin, clip, cubes, lattice};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 pub(super) use crossing::Cuts;
@@ -73,9 +74,16 @@ impl Lattice {
     /// The lattice around a surface, whose points nearly on planes of the lattice are moved to them.
     ///
     /// # Errors
-    /// If its triangles lie over each other by thousands.
-    pub(super) fn around(surface: &mut Surface, side: f64, has_middles: bool, most: usize) -> Result<Self, FillError> {
-        let (lattice, mut scaled) = lattice::Lattice::about(surface, side, None, most)?;
+    /// If its triangles lie over each other by thousands, or far more elements than allowed would be needed.
+    pub(super) fn around(
+        surface: &mut Surface,
+        side: f64,
+        has_middles: bool,
+        allowed: &Allowed,
+    ) -> Result<Self, FillError> {
+        let fill = if has_middles { Fill::Tetrahedra { side } } else { Fill::Polyhedra { side } };
+        check(&surface.measures(), fill, allowed)?;
+        let (lattice, mut scaled) = lattice::Lattice::about(surface, side, None, allowed.most)?;
         let counts = DVec3::from_array(lattice.counts.map(|count| count as f64)) + 2.0;
         scaled.points.iter_mut().for_each(|point| *point = 2.0 * (*point + 1.0));
         let inside = Inside::new(&scaled);

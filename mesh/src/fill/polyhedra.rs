@@ -17,9 +17,9 @@
 
 mod inner;
 
+use super::allowed::Allowed;
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::Draft;
-use super::lattice::too_many;
 use super::range;
 use super::{FillError, Filled, embed};
 use crate::{Flaws, Surface};
@@ -43,15 +43,15 @@ const FLAT: f64 = 1.0 / 16.0;
 const SMALL: f64 = 9.0 / 16.0 * LEAST * LEAST;
 
 /// Fills a surface with cubes of this side that are cut at the surface.
-pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
-    let lattice = Lattice::around(&mut surface, side, false, most)?;
+pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, allowed: &Allowed) -> Result<Filled, FillError> {
+    let lattice = Lattice::around(&mut surface, side, false, allowed)?;
     let is_inside = lattice.inside();
     let mut cuts = lattice.cuts(&is_inside, |_| false);
     let places = places(&lattice, &is_inside, &mut cuts);
     let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |thin, _, inside| {
         Cutting::new(&lattice, &places, &is_inside, &cuts, thin)
-            .draft(inside, most)
-            .map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))
+            .draft(inside, allowed.most)
+            .map_err(|needed| allowed.too_many(side, needed as f64, ""))
     })?;
     Ok(Filled { cage, surface, weights, flaws })
 }

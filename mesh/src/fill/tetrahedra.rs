@@ -4,9 +4,9 @@
 //! Transactions on Graphics 26(3), 2007): the tetrahedra of a body-centred lattice are cut at the surface, after points of the lattice
 //! close to a cut have been moved to it. Dihedral angles are between 10.7° and 164.8°.
 
+use super::allowed::Allowed;
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
 use super::draft::Draft;
-use super::lattice::too_many;
 use super::tighten::{Near, cosines};
 use super::{FillError, Filled, embed};
 use crate::{Flaws, Surface};
@@ -23,10 +23,10 @@ const SHORTER: f64 = 0.8;
 const SHORTEST: f64 = 0.5;
 
 /// Fills a surface with tetrahedra of a lattice with this side, or a shorter one if nodes would stay far outside.
-pub(super) fn fill(surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
+pub(super) fn fill(surface: Surface, flaws: Flaws, side: f64, allowed: &Allowed) -> Result<Filled, FillError> {
     let mut shorter = side;
     while shorter >= SHORTEST * side {
-        if let Some(filled) = of_lattice(surface.clone(), flaws, shorter, most)? {
+        if let Some(filled) = of_lattice(surface.clone(), flaws, shorter, allowed)? {
             return Ok(filled);
         }
         shorter *= SHORTER;
@@ -36,15 +36,15 @@ pub(super) fn fill(surface: Surface, flaws: Flaws, side: f64, most: usize) -> Re
 }
 
 /// The elements of a lattice with this side; `None` if nodes of them stay far outside.
-fn of_lattice(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Option<Filled>, FillError> {
-    let lattice = Lattice::around(&mut surface, side, true, most)?;
+fn of_lattice(mut surface: Surface, flaws: Flaws, side: f64, allowed: &Allowed) -> Result<Option<Filled>, FillError> {
+    let lattice = Lattice::around(&mut surface, side, true, allowed)?;
     let truly_inside = lattice.inside();
     let (is_far, near) = (Cell::new(false), OnceCell::new());
     let (cage, weights) = embed::carry(&surface, &flaws, &lattice, |wide, is_bold, _| {
         let is_inside: Vec<bool> = truly_inside.iter().zip(wide).map(|(inside, wide)| *inside || *wide > 0).collect();
         let cuts = lattice.cuts(&is_inside, |point| wide[point] > 0 && !truly_inside[point]);
-        let found = Stuffing::new(&lattice, &is_inside, cuts).draft(wide, most);
-        let mut draft = found.map_err(|needed| too_many(&surface.measures(), side, needed as f64, most, ""))?;
+        let found = Stuffing::new(&lattice, &is_inside, cuts).draft(wide, allowed.most);
+        let mut draft = found.map_err(|needed| allowed.too_many(side, needed as f64, ""))?;
         let near = || near.get_or_init(|| Near::new(&surface, &lattice));
         is_far.set(draft.is_wide.contains(&true) && near().tighten(&mut draft, is_bold));
         Ok(draft)

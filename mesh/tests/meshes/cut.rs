@@ -399,6 +399,26 @@ fn more_elements_than_allowed_are_refused() {
     }
 }
 
+/// Lattices with planes at flat ends may have up to eight times as many elements as others of their side.
+#[test]
+fn the_side_that_a_refusal_names_is_enough() {
+    for layers in [1.05, 1.3, 1.7, 2.05, 3.3] {
+        let thick = 0.05 * layers;
+        let [plate, bar] = [0.7, thick].map(|wide| block(DVec3::ZERO, DVec3::new(1.0, thick, wide)));
+        for surface in [plate, bar] {
+            for with in both(0.05) {
+                let all = fill(&surface, with, MOST).unwrap().cage.elements.len();
+                for part in [1.01, 1.5, 3.0, 7.0] {
+                    let most = (all as f64 / part) as usize;
+                    let side = fill(&surface, with, most).unwrap_err().fitting.unwrap();
+                    let fewer = if let Fill::Tetrahedra { .. } = with { both(side)[0] } else { both(side)[1] };
+                    assert!(fill(&surface, fewer, most).is_ok(), "{layers} layers, {with:?}: {side} for {most}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn what_has_no_inside_is_refused() {
     let sheet = Surface {
