@@ -786,6 +786,26 @@ fn displacements_of_points_at_rest_are_added_and_told() {
     assert_eq!(warnings(&one), "`m*.vtu` has one moment, to whose points its array `displacement` or `U` is not added");
 }
 
+/// Surfaces have no density, and nothing tells their masses.
+#[test]
+fn a_sequence_beside_a_simulated_run_is_told_to_have_no_masses() {
+    let files: Vec<_> = (0..2).map(|at| (format!("f{at}.obj"), surface("obj", f64::from(at)))).collect();
+    let simulated = "[[run]]\nname = 'S'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n";
+    for (other, told) in [("", 0), (simulated, 1)] {
+        let scene = format!(
+            "{other}[[run]]\nname = 'R'\nstates = 'f*.obj'\n[time]\nduration = 1\n\
+             [body]\nlattice = {{ cells = [1, 1, 1], side = 0.1 }}\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
+        std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        let scene = Scene::load(&folder.path().join("scene.toml"), &Limits::default()).unwrap();
+        let is_told =
+            |message: &str| message.starts_with("`f*.obj` has no masses: energies and momenta count each of its ");
+        assert_eq!(scene.warnings.iter().filter(|one| is_told(&one.message)).count(), told, "{:?}", scene.warnings);
+    }
+}
+
 /// Lists in any order; those of runs that were started again; with paths of Windows; of pieces; and in JSON.
 #[test]
 fn lists_of_other_programs_are_read() {

@@ -99,10 +99,17 @@ impl<'a> ReadRecording<'a> {
     }
 
     /// The recording, its state at the start, and its body unless it is the scene's; `None` after reporting a mistake. `whole` are all bodies of
-    /// the run as one.
-    pub(super) fn shown(self, run: &RunFile, whole: &Body) -> Option<(Arc<Recorded>, State, Option<SceneBody>)> {
+    /// the run as one; `is_beside` says whether other runs are simulated.
+    pub(super) fn shown(
+        self,
+        run: &RunFile,
+        whole: &Body,
+        is_beside: bool,
+    ) -> Option<(Arc<Recorded>, State, Option<SceneBody>)> {
         let source = self.source;
         let (report, known) = (source.body.report, source.body.report.total());
+        // Archives tell masses, or have the default that is documented for them.
+        let is_moment = matches!(self.own, Own::Moment { .. });
         let (recorded, own) = match self.own.of(self.recorded, whole, &source) {
             Ok((recorded, own)) => (Arc::new(recorded), own),
             Err(flaw) => return source.tell(flaw),
@@ -117,6 +124,12 @@ impl<'a> ReadRecording<'a> {
         if let Some((file, place)) = &source.file {
             mesh::warn_of_turned(turned, own.elements.len(), file, place);
             notes.iter().for_each(|note| place.warn(format!("`{file}` {note}"), None));
+            if is_moment && is_beside {
+                let nodes = count(own.nodes.len() as u128);
+                let message =
+                    format!("`{file}` has no masses: energies and momenta count each of its {nodes} nodes with 1 kg");
+                place.warn(message, "do not compare them with those of other runs, or give `mass` in a NumPy archive");
+            }
         }
         let made = body::recorded(own, run.name.clone(), start.clone())?;
         (report.total() == known).then_some((recorded, start, Some(made)))

@@ -80,6 +80,7 @@ impl Resolved<'_> {
 
     /// The runs without their steps, and the own bodies of recordings; `None` after a mistake in a model or a recording.
     fn without_steps(self, recordings: Vec<Option<ReadRecording<'_>>>) -> Option<(Vec<Run>, Vec<SceneBody>)> {
+        let is_beside = self.scene.file.run.iter().flatten().any(|run| run.states.is_none());
         let mut own = Vec::new();
         // Runs of the same bodies share them.
         let mut known: BTreeMap<&[usize], (Arc<Assembly>, State)> = BTreeMap::new();
@@ -93,7 +94,7 @@ impl Resolved<'_> {
                 let loads = self.loads.iter().flat_map(|load| load.in_run(of, &bodies)).map(Arc::new).collect();
                 return Some(Run { models, grips, grip_names, loads, ..bare(typed, of.clone(), (bodies, initial)) });
             }
-            let (recorded, start, shown) = read?.shown(typed, bodies.whole())?;
+            let (recorded, start, shown) = read?.shown(typed, bodies.whole(), is_beside)?;
             let run = match shown {
                 None => bare(typed, of.clone(), (bodies, start)),
                 Some(body) => {
