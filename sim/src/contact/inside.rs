@@ -34,6 +34,17 @@ pub(super) fn inside(points: &[DVec3], other: Placed<'_>) -> Vec<u32> {
     (0u32..).zip(turns).filter(|&(_, turns)| turns != 0).map(|(number, _)| number).collect()
 }
 
+/// The number of facets of one of two surfaces that lie wholly inside the other, where none cross.
+pub(super) fn enclosed(of: [Placed<'_>; 2]) -> usize {
+    let count = |one: Placed<'_>, other: Placed<'_>| {
+        let within = inside(one.at, other);
+        let is_within = |corner: &u32| within.binary_search(corner).is_ok();
+        let facets = 0..one.surface.facets.len() as u32;
+        if within.is_empty() { 0 } else { facets.filter(|&facet| one.used(facet).iter().all(is_within)).count() }
+    };
+    count(of[0], of[1]) + count(of[1], of[0])
+}
+
 /// 1 if a side in the plane of x and y crosses the ray along x from a point upwards, −1 if downwards, 0 if it does not.
 fn turn([a, b]: [DVec3; 2], point: DVec3) -> i32 {
     if (a.y > point.y) == (b.y > point.y) {

@@ -3,6 +3,7 @@
 use super::cross::crossings;
 use super::extent::Extent;
 use super::ground::Ground;
+use super::inside::enclosed;
 use super::known::Memory;
 use super::rule::Law;
 use super::shown::{Seen, Shown};
@@ -132,7 +133,8 @@ impl Stage {
         Seen { surfaces: &self.surfaces, rest: &self.rest, solids: &self.obstacles, start, interval }
     }
 
-    /// The number of pairs of facets that cross at a time (s), of each two surfaces that meet, with positions of all nodes (m).
+    /// The number of pairs of facets that cross at a time (s), of each two surfaces that meet, with positions of all nodes (m). Where none do
+    /// and one surface lies inside the other, the number of its facets.
     pub(crate) fn crossings(&self, position: &[DVec3], time: f64) -> Vec<([Side; 2], usize)> {
         let moment = self.moment(position, time);
         let pairs = (0..self.bodies).flat_map(|one| (one..self.surfaces.len()).map(move |other| [one, other]));
@@ -140,6 +142,7 @@ impl Stage {
             let both = of.map(|number| self.placed(&moment, number));
             let is_near = moment.distance(of) <= both[0].surface.radius() + both[1].surface.radius();
             let count = if is_near && self.law(of[0], of[1]).is_some() { crossings(both).len() } else { 0 };
+            let count = if count == 0 && is_near && of[0] != of[1] { enclosed(both) } else { count };
             (of.map(|number| self.side(number)), count)
         };
         pairs.map(count).filter(|&(_, count)| count > 0).collect()

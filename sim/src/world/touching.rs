@@ -83,8 +83,9 @@ impl World {
     }
 
     /// The numbers of pairs of facets that cross each other in the present state, of surfaces that meet: of each two bodies, a body and an
-    /// obstacle, or a body with itself, where there are some. In the plane facets are sides. `None` in a world whose
-    /// surfaces do not meet ([`Surroundings::contacts`](crate::Surroundings::contacts)).
+    /// obstacle, or a body with itself, where there are some. Of what lies inside another surface and crosses none of its facets, all facets
+    /// count. In the plane facets are sides. `None` in a world whose surfaces do not meet
+    /// ([`Surroundings::contacts`](crate::Surroundings::contacts)).
     pub fn crossings(&self) -> Option<Vec<([Side; 2], usize)>> {
         self.system.surroundings.contacts.as_ref()?;
         let (stage, time) = (self.system.contact.as_ref(), self.system.interval(self.state.steps).begin);

@@ -344,6 +344,22 @@ fn crossings_belong_to_both_bodies() {
     assert_eq!([all.crossings, of_each[0].crossings, of_each[1].crossings], [*count as f64; 3]);
 }
 
+/// A body that lies inside another one crosses none of its facets, and yet is told.
+#[test]
+fn a_body_inside_another_is_told() {
+    let (small, large) = (block([1; 3]), block([4; 3]));
+    for (at, expected) in [(0.0, 24), (1.0, 24), (6.0, 0)] {
+        let placed = [(Arc::clone(&large), still(DVec3::ZERO)), (Arc::clone(&small), still(DVec3::X * (at * SIDE)))];
+        let mut bodies = placed.to_vec();
+        for _ in 0..2 {
+            let world = by(Integrator::SemiImplicitEuler, Kernel::Fast, &bodies, 1e3, 0.02, with_contacts(0.0, 0.0));
+            let count: usize = world.crossings().expect("surfaces").iter().map(|(_, count)| count).sum();
+            assert_eq!(count, expected, "{at}");
+            bodies.reverse();
+        }
+    }
+}
+
 /// A state that is taken brings its sums, and one without sums begins anew.
 #[test]
 fn forces_go_on_with_the_state_that_has_them() {
