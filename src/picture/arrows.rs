@@ -28,7 +28,7 @@ pub(super) const SHORT: f64 = 4.0 * HEAD;
 const SMALLEST: f64 = 0.36;
 const FAINTEST: f64 = 0.33;
 /// Arrows fade where they are longer than the shortest by less than this part of its length.
-const FADING: f64 = 0.35;
+pub(super) const FADING: f64 = 0.35;
 /// More arrows than this would hide the body.
 const MOST_ARROWS: usize = 500;
 

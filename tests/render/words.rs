@@ -363,3 +363,27 @@ fn arrows_that_leave_their_panel_have_a_break() {
     };
     assert_eq!((broken(0.5), broken(20.0)), ([1, 0], [0, 1]));
 }
+
+/// A load without any sign of it would look like none.
+#[test]
+fn small_loads_are_dots_and_the_key_tells_so() {
+    let shown = |force: f64, load: &str| {
+        let scene = parse(&format!(
+            "time = {{ duration = 0.1, step = 0.005 }}
+            body = {{ lattice = {{ cells = [2, 2, 2], side = 0.1 }}, mass = 1.0 }}
+            run = [{{ name = 'shape', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
+            load = [{{ nodes = 'top', force = [0, {force}, 0] }}, {{ nodes = 'bottom', force = [0, 5, 0]{load} }}]
+            view = {{ show = ['surfaces', 'loads'], labels = ['legend'] }}"
+        ));
+        let picture = compose(&scene, &frame(&scene, 0));
+        let bottom = (picture.panels[0].viewport[1] + picture.panels[0].viewport[3]) as f32;
+        let in_panel = || picture.marks.iter().filter(|mark| mark.rectangle[1] < bottom);
+        let of = |shape: &str| in_panel().filter(|mark| mark.shape == shape).count();
+        let told = picture.words.iter().any(|run| run.text.ends_with("dots: too short to draw"));
+        (of("arrow"), of("node"), told)
+    };
+    assert_eq!(shown(5.0, ""), (2, 0, false));
+    assert_eq!(shown(0.001, ""), (1, 1, true));
+    // A load that rises begins as nothing, and soon as a dot.
+    assert_eq!(shown(5.0, ", ramp = 0.1"), (1, 0, true));
+}

@@ -16,7 +16,7 @@ impl Draft<'_> {
     /// its margins. They fade less where they hardly leave it, so that nothing changes suddenly.
     pub(super) fn fading(&self, solids: &[Vec<DVec3>]) -> Option<Fading> {
         let has_words = self.scene.view.labels.are_in_panels();
-        let room = if has_words { self.between_words() } else { self.viewport };
+        let room = if has_words { self.room } else { self.viewport };
         let [left, top, right, bottom] = sides(room.map(f64::from));
         let beside = 0.5 * self.scale.margin();
         let [left, right] = [left + beside, right - beside];

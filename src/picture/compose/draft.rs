@@ -36,7 +36,7 @@ pub(super) struct Draft<'a> {
     pub(super) viewport: Rectangle,
     /// The part of it without words.
     pub(super) clear: Rectangle,
-    /// The part of it for curves.
+    /// The part of it between words, over its whole width.
     pub(super) room: Rectangle,
     /// The runs at the same moment.
     pub(super) others: &'a [RunFrame],
@@ -113,7 +113,7 @@ impl<'a> Draft<'a> {
             framing,
             viewport,
             clear,
-            room: between(viewport, clear),
+            room: [viewport[0], clear[1], viewport[2], clear[3]],
             others: &[],
             scale,
             key: key_light(lens.right),
@@ -141,11 +141,6 @@ impl<'a> Draft<'a> {
             Some(_) => &self.composer.ramp,
             None => &self.lines_of_bodies,
         }
-    }
-
-    /// The part of the panel without words, over its whole width.
-    pub(super) fn between_words(&self) -> Rectangle {
-        between(self.viewport, self.clear)
     }
 
     /// The sides of a part of the picture and of some room around it, where lines are cut: their ends are not seen (px).
@@ -222,11 +217,6 @@ impl PixelBox {
         }
         all
     }
-}
-
-/// A part of a picture with the width of one rectangle and the height of another.
-fn between([left, _, width, _]: Rectangle, [_, top, _, height]: Rectangle) -> Rectangle {
-    [left, top, width, height]
 }
 
 /// The place of each node among the colours of bodies; empty for one body.

@@ -19,7 +19,7 @@ impl Draft<'_> {
         let body = carried.iter().map(region).fold(nodes, union);
         // Obstacles are drawn below the rows of words, if there are any.
         let has_words = self.scene.view.labels.are_in_panels();
-        let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });
+        let region = union(body, if has_words { overlap(around, self.room) } else { around });
         // Everything ends at the panel's words. A diverged body may cover the whole panel, and the words report it.
         if self.diverged { overlap(region, self.clear) } else { region }
     }

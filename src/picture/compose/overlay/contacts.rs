@@ -3,7 +3,6 @@
 use super::KeyPlace;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::layout::steps::RING;
 use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
@@ -11,11 +10,10 @@ use crate::scene::Scene;
 use crate::sim::{Diagnostic, Reaction, Side, Source};
 use glam::DVec3;
 
-/// Radius of a dot, in radii of a ring, and at most in lengths of an element; its least one (px).
-const DOT: [f64; 2] = [0.5, 0.09];
-const LEAST: f64 = 0.6;
 /// A force as large as the mean weight of bodies on Earth has an arrow as long as this share of the size of the largest body.
 const LENGTH: f64 = 0.5;
+/// The largest radius of a dot, in lengths of an element.
+const MOST_DOT: f64 = 0.09;
 
 /// A hollow arrow with its force in words.
 pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
@@ -29,7 +27,7 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
 /// Dots and arrows of contact. Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as
 /// loads are filled. Dots lie above all arrows.
 pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
-    let (snapshot, palette) = (draft.snapshot, &draft.composer.palette);
+    let snapshot = draft.snapshot;
     if !draft.scene.view.visible.contacts || draft.diverged {
         return;
     }
@@ -44,11 +42,10 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
         draft.arrow([start, start + force * metres], 0.0, 1.0, arrows::hollow)
     });
     marks.extend(farthest_first(arrows.collect()));
-    let size = arrows::size(draft.element, draft.scale.unit);
-    let radius = (DOT[0] * RING * size).min(DOT[1] * draft.element).max(LEAST);
-    let pixels = snapshot.contact_points.iter().filter_map(|point| draft.pixel(point.at));
-    let dots = pixels.filter(|&pixel| draft.holds(pixel, radius));
-    marks.extend(dots.map(|pixel| Item::rimmed(pixel, radius, palette.pointer, palette.background)));
+    let colour = draft.composer.palette.pointer;
+    marks.extend(
+        snapshot.contact_points.iter().filter_map(|point| draft.dot(point.at, MOST_DOT * draft.element, colour)),
+    );
 }
 
 /// The length of arrows (m) for each newton.

@@ -82,7 +82,7 @@ impl Draft<'_> {
 
     /// The ends of an arrow at the border of the panel towards what lies wholly beyond it; `None` for what is seen.
     fn way_to_unseen(&self, pixels: &[DVec2]) -> Option<[DVec2; 2]> {
-        let [left, top, width, height] = self.between_words().map(f64::from);
+        let [left, top, width, height] = self.room.map(f64::from);
         let (low, high) = (DVec2::new(left, top), DVec2::new(left + width, top + height));
         let least = pixels.iter().copied().reduce(DVec2::min)?;
         let most = pixels.iter().copied().reduce(DVec2::max)?;

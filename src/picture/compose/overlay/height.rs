@@ -38,7 +38,7 @@ impl Draft<'_> {
         let ends = [foot + lowest * normal, foot].map(|at| self.pixel(at));
         let [Some(start), Some(end)] = ends else { return };
         let unit = self.scale.line();
-        let [_, top, _, length] = self.between_words().map(f64::from);
+        let [_, top, _, length] = self.room.map(f64::from);
         // It is strong below all that is seen of the bodies, and stays above the words. Without room there it stands beside them.
         let [right, bottom] = PixelBox::new(&self.lens, points).corners[1].to_array();
         let level = |y: f64| start.lerp(end, (y - start.y) / (end.y - start.y));
@@ -81,7 +81,7 @@ impl Draft<'_> {
     /// A number to the right or to the left of a line, above a height in the picture (px); `None` without room.
     fn number_beside(&self, text: &str, [from, to]: [DVec2; 2], lowest: f64) -> Option<TextRun> {
         let (fonts, size, colour) = (&self.composer.fonts, self.scale.caption(), self.composer.palette.second_text);
-        let [left, _, width, _] = self.between_words().map(f64::from);
+        let [left, _, width, _] = self.room.map(f64::from);
         let (wide, apart) = (fonts.width(text, Weight::Regular, size), (BESIDE + FREE) * self.scale.line());
         let middle = from.midpoint(to);
         let fits = |at: &f64| *at >= left && at + wide <= left + width;

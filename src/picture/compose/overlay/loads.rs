@@ -1,6 +1,6 @@
 //! Loads: an arrow for each force on nodes, arrows on faces under pressure, and an arc for each torque.
 
-use super::{KeyPlace, contacts};
+use super::{KeyPlace, contacts, shortest_arrow};
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
 use crate::picture::legend::{Sample, SampleKind};
@@ -39,7 +39,12 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
         let also = pressure.filter(|_| force.is_some()).map(|_| value * scales.newton / scales.pascal);
         let also = also.map_or_else(String::new, |pascal| format!(" or {}", quantity(pascal, scales.unit)));
         let size = quantity(value, unit) + &also;
-        place.arrow(composer, [format!("load {size}"), size], value * metres * pixels)
+        // Loads that rise or fall, and small ones beside a large one, may be seen as dots.
+        let mut names = vec![format!("load {size}"), size];
+        if has_small(composer.scene, &scales, shortest_arrow(place.size(composer)) / pixels) {
+            names.insert(0, format!("{}, dots: too short to draw", names[0]));
+        }
+        place.arrow(composer, names, value * metres * pixels)
     });
     let turning = (scales.torque > 0.0).then(|| {
         let size = quantity(scales.torque, "N m");
@@ -49,6 +54,20 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
         }
     });
     straight.into_iter().chain(turning).collect()
+}
+
+/// Whether some load has at some time an arrow that is shorter than a length (m).
+fn has_small(scene: &Scene, scales: &Scales, shortest: f64) -> bool {
+    scene.runs.iter().flat_map(|run| &run.loads).any(|load| {
+        let metres = match load.pull() {
+            Pull::Dead(forces) => forces.iter().sum::<DVec3>().length() * scales.newton,
+            Pull::Pressure(pressure, _) | Pull::CarriedPressure(pressure, ..) => pressure.abs() * scales.pascal,
+            Pull::Torque(..) | Pull::Centrifugal(_) => return false,
+        };
+        let shares = || load.course().keys.iter().map(|&[_, share]| share);
+        let [low, high] = [shares().reduce(f64::min), shares().reduce(f64::max)].map(|share| share.unwrap_or(1.0));
+        metres * if low * high > 0.0 { low.abs().min(high.abs()) } else { 0.0 } < shortest
+    })
 }
 
 /// Arrows of loads. A force that pushes its body ends at the middle of its nodes, and one that pulls it begins there.
@@ -68,7 +87,7 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
                 let way = forces.iter().sum::<DVec3>() * (share * scales.newton);
                 let (at, centre) = (draft.middle_of(load), draft.centre(draft.own_nodes(load)));
                 let start = if way.dot(at - centre) < 0.0 { at - way } else { at };
-                found.extend(draft.arrow([start, start + way], 0.0, 1.0, arrows::with_halo));
+                found.extend(draft.load([start, start + way], at));
             }
             Pull::Pressure(pressure, faces) => {
                 let length = scales.pascal * pressure * share;
@@ -159,7 +178,17 @@ impl Draft<'_> {
         let faces_viewer = self.flat || self.lens.facing(at, area) > 0.0;
         let start = if length > 0.0 { at + out } else { at };
         let end = if length > 0.0 { start - out } else { start + out };
-        faces_viewer.then(|| self.arrow([start, end], 0.0, 1.0, arrows::with_halo))?
+        faces_viewer.then(|| self.load([start, end], at))?
+    }
+
+    /// The arrow of a load at a point (m). Where it is too short to be seen there is a dot in its place, or the load would seem to be none.
+    fn load(&self, ends: [DVec3; 2], at: DVec3) -> Option<(f64, Item)> {
+        let length = self.pixel(ends[0])?.distance(self.pixel(ends[1])?);
+        let least = (1.0 + arrows::FADING) * shortest_arrow(arrows::size(self.element, self.scale.unit));
+        match length > least {
+            true => self.arrow(ends, 0.0, 1.0, arrows::with_halo),
+            false => Some((self.lens.project(at)?.1, self.dot(at, f64::INFINITY, self.composer.palette.text)?)),
+        }
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.

@@ -20,6 +20,10 @@ use crate::picture::{Framing, Item, arrows};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
+/// Radius of a dot, in radii of a ring; its least one (px).
+const DOT: f64 = 0.5;
+const LEAST_DOT: f64 = 0.6;
+
 /// Draws an overlay over a panel.
 type Draw = fn(&Draft<'_>, &mut Vec<Item>);
 
@@ -55,8 +59,11 @@ impl KeyPlace<'_> {
     }
 
     /// The sample of an arrow of a length (px), with its meaning in words, and in few.
-    fn arrow<'c>(&self, composer: &Composer<'_>, names: [String; 2], length: f64) -> Sample<'c> {
-        Sample { names: names.map(Cow::from).into(), kind: SampleKind::Arrow([length, self.size(composer)]) }
+    fn arrow<'c>(&self, composer: &Composer<'_>, names: Vec<String>, length: f64) -> Sample<'c> {
+        Sample {
+            names: names.into_iter().map(Cow::from).collect(),
+            kind: SampleKind::Arrow([length, self.size(composer)]),
+        }
     }
 }
 
@@ -65,14 +72,14 @@ type DrawArrow = fn([DVec2; 2], f64, Colour, Colour) -> [Item; 2];
 
 impl Draft<'_> {
     /// An arrow between two points (m), with its depth; `None` if it would be a speck, or is not longer than `shortest` (px). Where it leaves the
-    /// room for it, its shaft has a break: it is longer than it is drawn.
+    /// room between words, its shaft has a break: it is longer than it is drawn.
     fn arrow(&self, [start, end]: [DVec3; 2], shortest: f64, opacity: f64, draw: DrawArrow) -> Option<(f64, Item)> {
         let size = arrows::size(self.element, self.scale.unit);
         let (to, depth) = self.lens.project(end)?;
-        let shortest = (RING * size).max(FREE).max(shortest);
+        let shortest = shortest_arrow(size).max(shortest);
         let whole = [self.pixel(start)?, to.into()];
         let is_short = whole[0].distance(whole[1]) < arrows::SHORT * size;
-        let (ends, part) = arrows::inside(whole, if is_short { self.viewport } else { self.clear }, size, shortest)?;
+        let (ends, part) = arrows::inside(whole, if is_short { self.viewport } else { self.room }, size, shortest)?;
         let palette = &self.composer.palette;
         let arrow = draw(ends, size, palette.text, palette.background).into_iter();
         let item = match ends == whole {
@@ -84,6 +91,18 @@ impl Draft<'_> {
         };
         Some((depth, item.faded(opacity * part)?))
     }
+
+    /// A dot at a point (m), where it is seen, not larger than `most` (px).
+    fn dot(&self, point: DVec3, most: f64, colour: Colour) -> Option<Item> {
+        let radius = (DOT * RING * arrows::size(self.element, self.scale.unit)).min(most).max(LEAST_DOT);
+        let pixel = self.pixel(point).filter(|&pixel| self.holds(pixel, radius))?;
+        Some(Item::rimmed(pixel, radius, colour, self.composer.palette.background))
+    }
+}
+
+/// The length that arrows of a size exceed (px).
+fn shortest_arrow(size: f64) -> f64 {
+    (RING * size).max(FREE)
 }
 
 /// The samples of overlays in a key.
