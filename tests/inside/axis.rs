@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn ticks_are_few_and_round() {
     type Case<'a> = (Kind, [f64; 2], &'a str, usize, &'a [&'a str], &'a str);
-    let expected: [Case; 31] = [
+    let expected: [Case; 34] = [
         (Kind::Count, [0.0, 9.0], "", 4, &["0", "3", "6", "9"], ""),
         (Kind::Count, [0.0, 1.0], "", 4, &["0", "1"], ""),
         (Kind::Count, [0.0, 10.0], "", 4, &["0", "5", "10"], ""),
@@ -16,6 +16,10 @@ fn ticks_are_few_and_round() {
         // Far longer than the body of 0.3 m, and far shorter than a millimetre.
         (Kind::Value, [0.0, 3.136], "m", 4, &["0", "2", "4"], "m"),
         (Kind::Value, [0.0, 1.02e-4], "m", 4, &["0", "40", "80", "120"], "µm"),
+        // Their ends would have four digits in millimetres, with three ticks, and so all have a unit in which none has.
+        (Kind::Value, [-0.83, 0.0], "m", 3, &["−1.0", "−0.5", "0"], "m"),
+        (Kind::Value, [-0.83, 0.0], "m", 4, &["−0.9", "−0.6", "−0.3", "0"], "m"),
+        (Kind::Value, [0.0, 0.49], "m", 3, &["0", "250", "500"], "mm"),
         (Kind::Value, [0.0, 7.28], "N", 3, &["0", "4", "8"], "N"),
         (Kind::Value, [0.0, 225.0], "N", 3, &["0", "250"], "N"),
         (Kind::Value, [0.0, 225.0], "N", 4, &["0", "100", "200", "300"], "N"),

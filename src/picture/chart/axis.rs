@@ -31,8 +31,9 @@ pub(in crate::picture) struct Stretch {
     pub ticks: Vec<f64>,
     /// The text at each of the ticks.
     pub texts: Vec<String>,
-    /// The unit of the texts, with its prefix.
+    /// The unit of the texts, with its prefix, and how large it is.
     pub unit: String,
+    pub factor: f64,
 }
 
 /// An axis ends at round numbers that enclose its values, if these fill at least this part of it.
@@ -46,7 +47,15 @@ impl Axis {
     /// An axis between two values, with texts at some of them.
     pub fn linear(range: [f64; 2], texts: Vec<(f64, String)>) -> Self {
         let (ticks, texts) = texts.into_iter().unzip();
-        Self(vec![Stretch { range, along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit: String::new() }])
+        Self(vec![Stretch {
+            range,
+            along: [0.0, 1.0],
+            is_logarithmic: false,
+            ticks,
+            texts,
+            unit: String::new(),
+            factor: 1.0,
+        }])
     }
 
     /// A logarithmic axis between two positive values, with numbers at powers of ten, at most `most` of them. A short
@@ -80,6 +89,7 @@ impl Axis {
             texts: all.iter().map(text).collect(),
             ticks: all.iter().map(|&(power, digit)| times_ten(digit, f64::from(power))).collect(),
             unit: String::new(),
+            factor: 1.0,
         }])
     }
 
@@ -97,16 +107,24 @@ impl Axis {
 
 impl Stretch {
     /// A stretch for values of a unit between two ends, with at least two and at most `most` ticks, if there are such
-    /// round numbers. Lengths have the unit for a body of a size (m) unless they are far larger or smaller.
+    /// round numbers. Lengths have the unit for a body of a size (m) unless they are far larger or smaller. The unit is one in which no number
+    /// has four digits, however many ticks there are.
     pub(in crate::picture) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, extent: f64, most: usize) -> Self {
-        let largest = low.abs().max(high.abs());
-        let (factor, prefix) = match kind {
-            _ if unit == "m" && number::suits(largest, extent) => number::metre(extent),
+        let prefix = |largest: f64| match unit {
+            "m" if number::suits(largest, extent) => number::metre(extent),
             // Kiloseconds are not in use.
-            _ if unit == "s" => prefix(largest.min(1.0)),
+            "s" => prefix(largest.min(1.0)),
             _ if takes_prefix(unit) => prefix(largest),
             _ => (1.0, ""),
         };
+        let size = |[low, high]: [f64; 2]| low.abs().max(high.abs());
+        let mut largest = size([low, high]);
+        if high - low > 0.0 && (high - low).is_finite() {
+            let (factor, _) = prefix(largest);
+            let with = |most: usize| factor * size(divide(kind, [low / factor, high / factor], most).range);
+            largest = [2, 3, 4, most.max(2)].map(with).into_iter().fold(largest, f64::max);
+        }
+        let (factor, prefix) = prefix(largest);
         let unit = format!("{prefix}{unit}");
         let [low, high] = [low / factor, high / factor];
         let span = high - low;
@@ -119,7 +137,7 @@ impl Stretch {
             };
             let texts = ticks.iter().map(f64::to_string).collect();
             let range = [low * factor, low * factor + (low * factor).abs().max(1.0)];
-            return Self { range, along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit };
+            return Self { range, along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit, factor };
         }
         let division = divide(kind, [low, high], most.max(2));
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
@@ -137,7 +155,17 @@ impl Stretch {
             ticks: division.ticks.iter().map(|tick| tick * factor).collect(),
             texts: division.ticks.iter().copied().map(text).collect(),
             unit,
+            factor,
         }
+    }
+
+    /// A value in the unit of the numbers beside it, to three digits of the largest one.
+    pub(super) fn in_words(&self, value: f64) -> String {
+        let largest = self.range[0].abs().max(self.range[1].abs()) / self.factor;
+        let power = libm::floor(libm::log10(largest.clamp(1e-300, 1e300))) - 2.0;
+        let value = times_ten(libm::round(value / self.factor * libm::exp10(-power)), power);
+        let text = if (-6.0..3.0).contains(&power) { value.to_string() } else { scientific(value) };
+        with_minus(format!("{text} {}", self.unit)).trim_end().to_owned()
     }
 
     /// The place of a value: 0 at the low end, 1 at the high end.

@@ -1,7 +1,8 @@
 //! Events in time series, in words. Flags in a chart and in panels mark them.
 
+use super::axis::Stretch;
 use super::ring;
-use super::series::{LEAST_RANGE, Series, in_words};
+use super::series::{LEAST_RANGE, Series, quantity};
 use crate::colour::Colour;
 use crate::look::Plot;
 use crate::picture::caption::{DIVERGES, RECORDING_ENDS, Writer};
@@ -36,13 +37,13 @@ pub(in crate::picture) struct Event {
     pub words: [String; 3],
 }
 
-/// The events in time series of a chart of a body of a size (m), up to an end (s), in the order of time.
-pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
+/// The events in time series beside an axis, up to an end (s), in the order of time. Extremes name their `quantity`, if it is not empty.
+pub(in crate::picture) fn events(series: &[Series], axis: Option<&Stretch>, quantity: &str, end: f64) -> Vec<Event> {
     let widest = series
         .iter()
         .flat_map(|one| &one.points)
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at[1]), high.max(at[1])]);
-    let value = |value: f64| in_words(plot, value, extent);
+    let value = |value: f64| axis.map_or_else(String::new, |axis| axis.in_words(value));
     let event = |one: &Series, time: f64, words: String, joint: &str| Event {
         run: one.run,
         time,
@@ -81,7 +82,7 @@ pub(in crate::picture) fn events(plot: &Plot, series: &[Series], extent: f64, en
             let extreme = extreme.filter(|[_, value]| one.diverged.is_none() && stands_out(*value));
             own.extend(extreme.map(|&[time, most]| {
                 let which = if most > start { "highest" } else { "lowest" };
-                event(one, time, format!("{which} {}", value(most)), "at")
+                event(one, time, extreme_of(which, quantity, &value(most)), "at")
             }));
         }
         let word = if one.is_end { RECORDING_ENDS } else { DIVERGES };
@@ -102,8 +103,17 @@ pub(in crate::picture) fn narrowest(plot: &Plot, scene: &Scene) -> Vec<Event> {
     if plot.diagnostic() == Some(Diagnostic::TurnedOver) {
         return vec![event("first turned over".to_owned(), "at"), event("settles at 1".to_owned(), "after")];
     }
-    let extent = scene.extent();
-    vec![event(format!("lowest {}", in_words(plot, 0.1 * extent, extent)), "at")]
+    vec![event(extreme_of("lowest", &named(plot, scene), "0.12 mm"), "at")]
+}
+
+/// The quantity of a chart of a scene where its extremes name it: where there are others.
+pub(super) fn named(plot: &Plot, scene: &Scene) -> String {
+    if scene.view.charts.len() > 1 { quantity(plot, scene) } else { String::new() }
+}
+
+/// An extreme in words.
+fn extreme_of(which: &str, quantity: &str, value: &str) -> String {
+    [which, quantity, value].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// The words of an event at a time: whole, shorter, and without the time.
@@ -185,6 +195,7 @@ impl Writer<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::axis::Kind;
     use super::*;
     use crate::look::LineStyle;
 
@@ -193,8 +204,11 @@ mod tests {
         Series { is_count, ..Series::plain(run, style, points.to_vec()) }
     }
 
+    /// The events beside the axis of a diagnostic of a body of 0.3 m.
     fn words(diagnostic: Diagnostic, series: &[Series]) -> Vec<String> {
-        events(&diagnostic.into(), series, 0.3, 3.0).into_iter().map(|event| event.words[0].clone()).collect()
+        let range = super::super::series::range(series, true).expect("values");
+        let axis = Stretch::new(Kind::Value, range, diagnostic.unit(), 0.3, 4);
+        events(series, Some(&axis), "", 3.0).into_iter().map(|event| event.words[0].clone()).collect()
     }
 
     #[test]
@@ -223,7 +237,16 @@ mod tests {
         let error = series(0, false, &[[0.0, 0.0], [0.05, 0.102], [1.0, 0.01], [3.0, 0.005]]);
         assert_eq!(words(Diagnostic::ShapeError, &[error]), ["highest 102 mm at 50 ms"]);
         let volume = series(0, false, &[[0.0, 1.0], [0.05, 0.6], [3.0, 1.0]]);
-        assert_eq!(words(Diagnostic::VolumeRatio, &[volume]), ["lowest 0.60 at 50 ms"]);
+        assert_eq!(words(Diagnostic::VolumeRatio, &[volume]), ["lowest 0.6 at 50 ms"]);
+        // Beside an axis in micrometres, "< 0.1 mm" would say nothing; beside one in metres, −830 mm little.
+        let small = series(0, false, &[[0.0, 0.0], [0.05, 3.141e-5], [3.0, 0.0]]);
+        assert_eq!(words(Diagnostic::ShapeError, &[small]), ["highest 31.4 µm at 50 ms"]);
+        let far = series(0, false, &[[0.0, 0.0], [0.05, -0.8304], [3.0, 0.0]]);
+        assert_eq!(words(Diagnostic::ShapeError, std::slice::from_ref(&far)), ["lowest −0.83 m at 50 ms"]);
+        let axis = Stretch::new(Kind::Value, [-0.9, 0.0], "m", 0.3, 3);
+        let among_others = &events(&[far], Some(&axis), "displacement of end", 3.0)[0].words;
+        assert_eq!(among_others[0], "lowest displacement of end −0.83 m at 50 ms");
+        assert_eq!(among_others[2], "lowest displacement of end −0.83 m");
         // What stays but for round-off has none.
         let kept = series(0, false, &[[0.0, 30.0], [0.05, 30.0 - 1e-12], [3.0, 30.0]]);
         assert!(words(Diagnostic::Momentum, &[kept]).is_empty());

@@ -1,4 +1,4 @@
-//! The layers of charts: areas, bands, lines, traces and dots.
+//! The layers of charts: areas, bands, lines, tiles and dots.
 
 use super::axis::Stretch;
 use super::{Chart, PlotArea};
@@ -31,19 +31,8 @@ pub enum Layer {
         /// The colour, of which the band has a tint.
         colour: Colour,
     },
-    /// A line through points. Where it goes up and down too densely to be seen, it is a band.
+    /// A line through points. Where it goes up and down too densely to be seen, it is a band, unless it goes back, as a loop does.
     Line {
-        /// The points.
-        points: Vec<[f64; 2]>,
-        /// Its colour.
-        colour: Colour,
-        /// Its width (px).
-        width: f64,
-        /// The lengths of dashes and gaps in turn (px); empty for a solid line.
-        dash: Vec<f64>,
-    },
-    /// A line through points in any order, such as a loop.
-    Trace {
         /// The points.
         points: Vec<[f64; 2]>,
         /// Its colour.
@@ -94,19 +83,16 @@ impl Layer {
                     band(writer, place, &curves, [left, ends.fold(right, f64::min)], 0.0, *colour);
                 }
                 Self::Line { points, colour, width, dash } => {
-                    let points = pixels(points);
-                    let dense = dense(&points, place.line);
+                    let dense = self.dense(chart, stretch, place);
+                    let points = match goes_on(points) {
+                        true => pixels(points),
+                        false => points.iter().map(|&[x, y]| [place.x(&chart.x, x), place.y(&chart.y, y)]).collect(),
+                    };
                     let of_line = std::slice::from_ref(&points);
                     dense
                         .iter()
                         .for_each(|&span| band(writer, place, of_line, span, 0.5 * BESIDE * place.line, *colour));
                     for part in outside(&points, &dense).iter().flat_map(|part| pieces(part, place.borders())) {
-                        writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
-                    }
-                }
-                Self::Trace { points, colour, width, dash } => {
-                    let points = points.iter().map(|&[x, y]| [place.x(&chart.x, x), place.y(&chart.y, y)]);
-                    for part in pieces(&points.collect::<Vec<_>>(), place.borders()) {
                         writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
                     }
                 }
@@ -134,9 +120,21 @@ impl Layer {
 
     /// Whether a part of a line is a band.
     pub(super) fn has_band(&self, chart: &Chart, place: PlotArea) -> bool {
-        let Self::Line { points, .. } = self else { return false };
-        chart.x.0.iter().any(|stretch| !dense(&pixels(points, chart, stretch, place), place.line).is_empty())
+        chart.x.0.iter().any(|stretch| !self.dense(chart, stretch, place).is_empty())
     }
+
+    /// The dense parts of a line on a stretch of the axis to the right (px).
+    fn dense(&self, chart: &Chart, stretch: &Stretch, place: PlotArea) -> Vec<[f64; 2]> {
+        match self {
+            Self::Line { points, .. } if goes_on(points) => dense(&pixels(points, chart, stretch, place), place.line),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Whether a line never goes back to the left.
+fn goes_on(points: &[[f64; 2]]) -> bool {
+    points.is_sorted_by(|one, other| one[0] <= other[0])
 }
 
 /// The part of a line on a stretch of the axis to the right (px), without values that have no place: infinite ones, and zero on a

@@ -3,9 +3,10 @@
 use super::series::Series;
 use super::{Chart, PlotArea};
 use crate::colour::Colour;
+use crate::picture::Item;
 use crate::picture::caption::Writer;
 use crate::picture::layout::Scale;
-use crate::picture::layout::steps::{BESIDE, FREE, GAP, HAIR, SMALL};
+use crate::picture::layout::steps::{APART, BESIDE, FREE, GAP, HAIR, NEAR, SMALL, STRONG};
 use crate::picture::text::{Fonts, Weight};
 
 /// The opacity of a leader line. It is dotted if its curve ends early, or it would look like a part of the curve.
@@ -22,24 +23,32 @@ pub struct Name {
     pub end: [f64; 2],
     /// The colour of the line.
     pub colour: Colour,
+    /// The lengths of its dashes and gaps in turn (px); empty for a solid line. Where one of the names has dashes, all have a sample of their
+    /// line before them: the ends of lines on each other look alike.
+    pub dash: Vec<f64>,
 }
 
-/// The width of the names of series right of a chart, with the gap (px), in a room of a width (px). `None` for a single run, which needs no
-/// name, and if not all names have room: samples of lines beside the names of panels and of rows are a key without them.
-pub(super) fn width(fonts: &Fonts, series: &[Series], unit: f64, room: f64) -> Option<f64> {
+/// The width of the names of series right of a chart, with the gap, in a room of a width (px), and whether their dashes have samples. `None` for
+/// a single run, which needs no name, and if not all names have room: samples of lines beside the names of panels and of rows are a key
+/// without them.
+pub(super) fn width(fonts: &Fonts, series: &[Series], unit: f64, room: f64) -> Option<(f64, bool)> {
     let size = SMALL * unit;
     let widest = series.iter().map(|one| fonts.width(&one.name, Weight::Regular, size)).fold(0.0, f64::max);
-    let has_room = widest <= room - BESIDE * unit && Scale::legible(size);
+    let are_dashed = series.iter().any(|one| !one.style.dash.is_empty());
+    let ways =
+        [(BESIDE + APART + NEAR, true), (BESIDE, false)].into_iter().filter(|&(_, sampled)| are_dashed || !sampled);
+    let mut fitting = ways.map(|(before, sampled)| (before * unit + widest, sampled)).filter(|&(wide, _)| wide <= room);
     let is_named = series.len() > 1 && series.iter().any(|one| !one.points.is_empty());
-    (is_named && has_room).then_some(BESIDE * unit + widest)
+    fitting.next().filter(|_| is_named && Scale::legible(size))
 }
 
-/// The names at the ends of time series that have values.
-pub(super) fn at_ends(series: &[Series]) -> Vec<Name> {
+/// The names at the ends of time series that have values, with samples of dashes or without.
+pub(super) fn at_ends(series: &[Series], sampled: bool) -> Vec<Name> {
     let name = |one: &Series| {
         // A loop ends in the midst of a chart: its rightmost point has the name.
         let end = one.points.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]))?;
-        Some(Name { text: one.name.clone(), end, colour: one.style.colour })
+        let dash = if sampled { one.style.dash.to_vec() } else { Vec::new() };
+        Some(Name { text: one.name.clone(), end, colour: one.style.colour, dash })
     };
     series.iter().filter_map(name).collect()
 }
@@ -56,7 +65,8 @@ pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: PlotArea, nam
     let half = 0.5 * GAP * unit;
     let places = spread(&heights, GAP * unit, [top + half, bottom - half]);
     let left = place.right + BESIDE * unit;
-    for (&(Name { text, colour, .. }, [x, y]), &height) in named.iter().zip(&places) {
+    let sampled = names.iter().any(|name| !name.dash.is_empty());
+    for (&(Name { text, colour, dash: own, .. }, [x, y]), &height) in named.iter().zip(&places) {
         let is_early = x < place.right - 1.0;
         if is_early || (height - y).abs() > FREE * unit {
             let free = FREE * unit;
@@ -66,6 +76,10 @@ pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: PlotArea, nam
             let dash = if is_early { &DOTS[..] } else { &[] };
             writer.curves.push(place.curve(&points, HAIR, dash, (*colour, LEADER)));
         }
+        let end = left + APART * unit;
+        let sample = || Item::part("sample", [place.curve(&[[left, height], [end, height]], STRONG, own, *colour)]);
+        writer.marks.extend(sampled.then(sample));
+        let left = if sampled { end + NEAR * unit } else { left };
         let colour = writer.palette.text_like(*colour);
         writer.left(text, Weight::Regular, size, colour, left, height + 0.36 * size);
     }

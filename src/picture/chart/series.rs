@@ -177,19 +177,18 @@ impl Series {
         (self.is_count && !self.is_part).then(|| Layer::Area { points: self.points.clone(), colour: palette.alarm })
     }
 
-    /// Its curve against a displacement.
-    pub(super) fn trace(&self) -> Layer {
+    /// Its curve.
+    pub(super) fn line(&self) -> Layer {
         let LineStyle { colour, dash } = self.style;
-        Layer::Trace { points: self.points.clone(), colour, width: STRONG, dash: dash.to_vec() }
+        let width = if self.is_part { HAIR } else { STRONG };
+        Layer::Line { points: self.points.clone(), colour, width, dash: dash.to_vec() }
     }
 
     /// Its curve over time, that of several scenes or nodes on a band.
     pub(super) fn curves(&self) -> impl Iterator<Item = Layer> {
-        let LineStyle { colour, dash } = self.style;
+        let colour = self.style.colour;
         let band = (!self.members.is_empty()).then(|| Layer::Band { curves: self.members.clone(), colour });
-        let width = if self.is_part { HAIR } else { STRONG };
-        let own = Layer::Line { points: self.points.clone(), colour, width, dash: dash.to_vec() };
-        band.into_iter().chain([own])
+        band.into_iter().chain([self.line()])
     }
 }
 
@@ -201,28 +200,13 @@ pub(in crate::picture) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'stati
     }
 }
 
-/// The name of what a chart shows of a scene.
-pub(super) fn title(plot: &Plot, scene: &Scene) -> String {
-    let mut name = match plot {
+/// What a chart shows of a scene, in words.
+pub(super) fn quantity(plot: &Plot, scene: &Scene) -> String {
+    match plot {
         Plot::Diagnostic(diagnostic) | Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
             name(*diagnostic, scene).to_owned()
         }
         Plot::Of(of) => of.name(),
-    };
-    if let Some(first) = name.get_mut(..1) {
-        first.make_ascii_uppercase();
-    }
-    name
-}
-
-/// A value in a chart, with its unit, of a body of a size (m).
-pub(super) fn in_words(plot: &Plot, value: f64, extent: f64) -> String {
-    match plot {
-        Plot::Diagnostic(diagnostic) | Plot::ByBody(PlotByBody { plot: diagnostic, .. }) => {
-            number::value(*diagnostic, value, extent)
-        }
-        Plot::Of(of) if of.plot == Measure::Displacement => number::length(value, extent),
-        Plot::Of(of) => number::with_unit(value, of.plot.words()[1]),
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
+use super::event;
 use super::names::{self, at_ends, fitting};
 use super::series::{self, Series};
 use super::{Chart, PlotArea};
@@ -41,8 +42,8 @@ struct Quantity {
     series: Vec<Series>,
     /// The number of runs shown; 0 if each body has its series.
     runs: usize,
-    /// The width of the names at the ends of curves (px), if there is room for them.
-    ends: Option<f64>,
+    /// The width of the names at the ends of curves (px), and whether they have samples of dashes, if there is room for them.
+    ends: Option<(f64, bool)>,
     /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
     /// Whether the axis to the right is that of a displacement, and its range (m).
@@ -105,7 +106,7 @@ impl Quantity {
         let of = plot.of();
         let mut one = Self {
             at,
-            name: series::title(plot, scene),
+            name: capital(series::quantity(plot, scene)),
             notes: Vec::new(),
             kind: if is_count { Kind::Count } else { Kind::Value },
             unit: of.map_or_else(|| diagnostic.map_or("", Diagnostic::unit), |of| of.plot.words()[1]),
@@ -156,7 +157,7 @@ impl Quantity {
         if let Some(ways) = self.against {
             let most = ((place.right - place.left) / (2.0 * MARGIN * place.unit)) as usize;
             let x = ways.map(|ways| Stretch::new(Kind::Value, ways, "m", self.extent, most.clamp(2, MOST_WAYS)));
-            let layers = if y.0.is_empty() { Vec::new() } else { series.iter().map(Series::trace).collect() };
+            let layers = if y.0.is_empty() { Vec::new() } else { series.iter().map(Series::line).collect() };
             return Chart { x: Axis(x.into_iter().collect()), y, layers, annotations: Vec::new() };
         }
         let areas = series.iter().filter_map(|one| one.area(writer.palette));
@@ -191,6 +192,14 @@ impl Quantity {
             writer.left(text, Weight::Regular, SMALL * unit, palette.second_text, left, baseline);
         }
     }
+}
+
+/// A text that begins with a capital letter.
+fn capital(mut text: String) -> String {
+    if let Some(first) = text.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    text
 }
 
 /// All entries of lists: the first of each, then the second of each, and so on.
@@ -287,7 +296,7 @@ impl Stack {
 
     /// The width of the names right of the charts (px).
     pub(in crate::picture) fn ends_width(&self) -> f64 {
-        self.quantities.iter().filter_map(|one| one.ends).fold(0.0, f64::max)
+        self.quantities.iter().filter_map(|one| one.ends).map(|(width, _)| width).fold(0.0, f64::max)
     }
 
     /// The most names at the ends of the curves of a chart.
@@ -304,10 +313,13 @@ impl Stack {
         self.quantities.iter().filter(|one| one.against.is_none()).count()
     }
 
-    /// The place of the first chart of runs over time among all, with their time series.
-    pub(super) fn first(&self) -> (usize, &[Series]) {
+    /// The time series of the first chart of runs over time, its axis, and its quantity where extremes name it.
+    pub(super) fn first(&self, charts: &[Plot], scene: &Scene) -> (&[Series], Option<Stretch>, String) {
         let of_runs = |one: &&Quantity| one.against.is_none() && one.runs > 0;
-        self.quantities.iter().find(of_runs).map(|one| (one.at, &one.series[..])).unwrap_or_default()
+        let first = self.quantities.iter().find(of_runs);
+        first.map_or_else(Default::default, |one| {
+            (&one.series[..], one.values(MOST_TICKS), event::named(&charts[one.at], scene))
+        })
     }
 
     /// The places of the charts among all, in the order in which they are drawn, each with the series of runs.
@@ -342,8 +354,8 @@ impl Stack {
         }
         for (at, (one, (chart, place))) in self.quantities.iter().zip(&mut placed).enumerate() {
             let shown = one.shown(*place, room.beyond);
-            let names = one.ends.map(|_| Annotation::Names { names: at_ends(shown), beyond: [room.beyond; 2] });
-            chart.annotations.extend(names);
+            let names = |(_, sampled)| Annotation::Names { names: at_ends(shown, sampled), beyond: [room.beyond; 2] };
+            chart.annotations.extend(one.ends.map(names));
             chart.ground(ground, *place, at + 1 >= over_time);
             chart.curves(curves, *place);
             let Some(left) = room.names else { continue };

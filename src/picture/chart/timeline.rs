@@ -57,8 +57,8 @@ impl Timeline {
         let side = layout.scale.margin();
         let width = f64::from(scene.view.size[0]) - 2.0 * side;
         let stack = Stack::new(plots, &[(scene, history)], &ground, NAMES * width, str::to_owned);
-        let (place, first) = stack.first();
-        let mut events = event::events(&plots[place], first, scene.extent(), history.end);
+        let (first, axis, quantity) = stack.first(plots, scene);
+        let mut events = event::events(first, axis.as_ref(), &quantity, history.end);
         // A number without an explanation in its panel would mean nothing.
         for one in first {
             let own: Vec<_> = events.iter().filter(|event| event.run == one.run).collect();

@@ -131,6 +131,7 @@ impl Map {
             text: text.clone(),
             end: [x[1], *height],
             colour: SECOND_TEXT,
+            dash: Vec::new(),
         });
         let chart = Chart {
             x: Axis::logarithmic(x, MOST),

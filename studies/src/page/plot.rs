@@ -40,7 +40,7 @@ pub(crate) struct Line {
 /// The room at the left of a plot for numbers, above it, and at its right for names (px).
 const NUMBERS: f64 = 58.0;
 const ABOVE: f64 = 54.0;
-const NAMES: f64 = 172.0;
+const NAMES: f64 = 210.0;
 pub(super) const ROOM: Room = Room { around: [NUMBERS, ABOVE, NAMES, 62.0], shape: 1.05, legend: 0.0 };
 /// The extent of names above and below a plot (px).
 const BEYOND: [f64; 2] = [0.0, 30.0];
@@ -142,8 +142,9 @@ impl Plot {
                 if curve.name.is_empty() { UNNAMED } else { self.curves[..at].iter().filter(is_variant).count() };
             let (width, radius) = if curve.is_strong { (STRONG, STRONG_DOT) } else { (CURVE, DOT) };
             let end = self.named(&chart, area, curve).filter(|_| !curve.name.is_empty());
-            names.extend(end.map(|end| Name { text: curve.name.clone(), end, colour }));
-            layers.push(Layer::Line { points: points.clone(), colour, width, dash: dashes(variant).to_vec() });
+            let dash = dashes(variant).to_vec();
+            names.extend(end.map(|end| Name { text: curve.name.clone(), end, colour, dash: dash.clone() }));
+            layers.push(Layer::Line { points: points.clone(), colour, width, dash });
             layers.push(Layer::Dots { points, colour, radius });
         }
         (chart.layers, chart.annotations) = (layers, vec![Annotation::Names { names, beyond: BEYOND }]);
