@@ -1,8 +1,10 @@
 //! The arrangement and the cameras of the panels of a frame.
 
 use super::Composer;
+use super::draft::PixelBox;
 use crate::look::{CameraBoxes, Traced};
 use crate::picture::Framing;
+use crate::picture::camera::Lens;
 use crate::picture::framing::{self, Seen, SeenMoment, Shot};
 use crate::picture::layout::steps::{CLOSE, RING};
 use crate::picture::layout::{Rectangle, Scale, clear_of_words};
@@ -28,7 +30,15 @@ impl Composer<'_> {
             let layout = self.around(runs, columns).layout;
             let panel = *layout.panels.first()?;
             let shot = self.shot(panel, layout.scale).map(|shot| shot.pixels);
-            let still = || self.pixels_a_metre(panel, &Framing::still(&view.camera), layout.scale);
+            let still = || {
+                let framing = Framing::still(&view.camera);
+                let pixels = self.pixels_a_metre(panel, &framing, layout.scale);
+                // What hardly fits into the width of its panel is not larger.
+                let lens = Lens::new(view, &framing, self.scene.dimension(), panel.map(f64::from), layout.scale.unit);
+                let nodes = self.scene.runs.iter().flat_map(|run| &run.initial.position);
+                let [low, high] = PixelBox::new(&lens, nodes).corners;
+                pixels * (FILLED * f64::from(panel[2]) / (high.x - low.x).max(1.0)).min(1.0)
+            };
             Some(shot.unwrap_or_else(still))
         };
         let panels = runs.len();
