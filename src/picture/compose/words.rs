@@ -1,9 +1,8 @@
 //! The words of a scene's pictures: their places, which are the same in all frames, and words without room.
 
 use super::numbers::NumberPart;
-use super::overlay::have_colours_of_runs;
 use super::{Arranged, Composer};
-use crate::look::{Labels, LineStyle, Plot};
+use crate::look::{Ghost, Labels, LineStyle, Plot};
 use crate::picture::caption::{self, Heading};
 use crate::picture::chart::{event, style};
 use crate::picture::description::{are_shortened, second_lines};
@@ -120,12 +119,11 @@ impl Composer<'_> {
         }
     }
 
-    /// The line of a run in the chart or among arrows, if there are any.
+    /// The line of a run in the chart, or that of its paths or its ghost, if there are any.
     fn sample(&self, run: usize, has_chart: bool) -> Option<LineStyle> {
         let view = &self.scene.view;
-        let has_arrows = view.visible.displacements && view.colour.is_none();
-        let has_curves = have_colours_of_runs(view);
-        if !view.labels.legend || !(has_chart || has_arrows || has_curves) {
+        let has_curves = !view.paths.is_empty() || view.ghost == Some(Ghost::Run(run));
+        if !view.labels.legend || !(has_chart || has_curves) {
             return None;
         }
         // Without a chart of runs, only colours count.
