@@ -348,7 +348,7 @@ diagnostics! { facts:
         facts.told(|body| body.outside.grips.map(|[_, torque]| torque));
 
     /// Number of pairs of triangles, or of sides in the plane, of bodies and obstacles that cross each other where surfaces meet: 0 where all is
-    /// well.
+    /// well. The triangles of a body that lies inside another one count, too.
     Crossings, crossings: f64, "crossings", "", Frames = facts.crossings();
 }
 

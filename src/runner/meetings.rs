@@ -117,7 +117,9 @@ pub(crate) fn crossing(scene: &Scene, frame: &RunFrame) -> Option<String> {
     let of_bodies = if names.is_empty() { "" } else { ", of " };
     let (names, time) = (list(&names, "and", |name| format!("“{name}”")), short(snapshot.time));
     let (shorter, pairs) = (short(of.step / 2.0), several(count as u64, "crossing"));
-    let step = format!("take a shorter step, such as {shorter} s; if that does not help, they are crumpled too much");
+    let step = format!(
+        "take a shorter step, such as {shorter} s; if that does not help, they are crumpled too much or dragged into each other"
+    );
     Some(format!("surfaces cross at {time} s in “{}”{of_bodies}{names} ({pairs}): {step}", of.name))
 }
 

@@ -132,7 +132,7 @@ fn every_shipped_scene_goes_on_from_what_was_written_with_the_same_bits() {
         scenes += 1;
         for run in 0..scene.runs.len() {
             // A step of backward Euler costs as much as many of the others.
-            let most = if scene.runs[run].integrator == Integrator::BackwardEuler { 30 } else { 300 };
+            let most = if scene.runs[run].integrator == Integrator::BackwardEuler { 20 } else { 120 };
             let steps = scene.frame_step(run, scene.last_frame()).min(most);
             let mut whole = scene.world(run);
             whole.advance(steps);

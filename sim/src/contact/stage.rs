@@ -141,8 +141,13 @@ impl Stage {
         let count = |of: [usize; 2]| {
             let both = of.map(|number| self.placed(&moment, number));
             let is_near = moment.distance(of) <= both[0].surface.radius() + both[1].surface.radius();
-            let count = if is_near && self.law(of[0], of[1]).is_some() { crossings(both).len() } else { 0 };
-            let count = if count == 0 && is_near && of[0] != of[1] { enclosed(both) } else { count };
+            let count = match is_near && self.law(of[0], of[1]).is_some() {
+                true => match crossings(both).len() {
+                    0 if of[0] != of[1] => enclosed(both),
+                    count => count,
+                },
+                false => 0,
+            };
             (of.map(|number| self.side(number)), count)
         };
         pairs.map(count).filter(|&(_, count)| count > 0).collect()
