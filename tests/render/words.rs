@@ -379,7 +379,7 @@ fn small_loads_are_dots_and_the_key_tells_so() {
         let bottom = (picture.panels[0].viewport[1] + picture.panels[0].viewport[3]) as f32;
         let in_panel = || picture.marks.iter().filter(|mark| mark.rectangle[1] < bottom);
         let of = |shape: &str| in_panel().filter(|mark| mark.shape == shape).count();
-        let told = picture.words.iter().any(|run| run.text.ends_with("dots: too short to draw"));
+        let told = picture.words.iter().any(|run| run.text.ends_with("dots: smaller loads"));
         (of("arrow"), of("node"), told)
     };
     assert_eq!(shown(5.0, ""), (2, 0, false));

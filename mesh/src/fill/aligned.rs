@@ -10,7 +10,7 @@ use glam::DVec3;
 
 /// Both ends of a box are flat if faces there are at least this part of it across an axis. Of 115 closed meshes of other projects, eight
 /// change from .1 to .75 with 15 cells. Tetrahedra of a joint lose .4 % of its volume at .25, and 1.4 % at .5, those of a U 2.7 % up to .5
-/// and 6.7 % at .75. At .1, polyhedra of an anchor fill 3.6 % too much in place of .7 %, with two fifths more of them. Bars, I-beams and
+/// and 6.7 % at .75. At .1, polyhedra of an anchor fill 3.6 % too much in place of .7 %, with two fifths more of them. I-beams, the hare and
 /// cylinders are alike with all four.
 const FLAT: f64 = 0.25;
 /// Points nearer than this to an end, in sides, are on it.

@@ -42,7 +42,7 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
         // Loads that rise or fall, and small ones beside a large one, may be seen as dots.
         let mut names = vec![format!("load {size}"), size];
         if has_small(composer.scene, &scales, shortest_arrow(place.size(composer)) / pixels) {
-            names.insert(0, format!("{}, dots: too short to draw", names[0]));
+            names.insert(0, format!("{}, dots: smaller loads", names[0]));
         }
         place.arrow(composer, names, value * metres * pixels)
     });
