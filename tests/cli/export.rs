@@ -664,13 +664,15 @@ fn surfaces_of_other_programs_are_bodies_of_their_own() {
     }
     let run = "[[run]]\nname = \"Thrown\"\nstates = \"thrown/tetra_*.obj\"\n";
     place.write("scene.toml", &SMALL.replace("[[obstacle]]", &format!("{run}[[obstacle]]")));
-    place.run("simulate scene.toml --only Thrown --write vtu -o out").good();
+    let no_masses = "has no masses: energies and momenta count each of its 4 nodes with 1 kg";
+    let played = place.run("simulate scene.toml --only Thrown --write vtu -o out");
+    assert!(played.status == Some(0) && played.err.contains(no_masses), "{played:?}");
     let run = &place.json("out/run.json")["runs"][0];
     assert_eq!(run["status"], "ended");
     // Five moments at 60 frames per second.
     assert!((run["time"].as_f64().unwrap() - 4.0 / 60.0).abs() < 1e-12, "{run}");
-    let told = place.run("check scene.toml").good();
-    assert!(told.out.contains("tetra_*.obj, recorded, 5 states"), "{told:?}");
+    let told = place.run("check scene.toml");
+    assert!(told.out.contains("tetra_*.obj, recorded, 5 states") && told.err.contains(no_masses), "{told:?}");
 }
 
 #[test]
