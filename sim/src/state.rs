@@ -100,8 +100,8 @@ pub struct Memory {
     pub integrator: Vec<f64>,
     /// Of forces of contact and of constraints, if they are kept ([`World::keep_reactions`](super::World::keep_reactions)): sums and means.
     pub contact: Vec<f64>,
-    /// Of forces from outside, if there are any: their work so far (J) on each part, and the time (s) and the positions (m) of their nodes when
-    /// it was added up, and for methods of an order above 2 their velocities (m/s).
+    /// Of forces from outside, if there are any: their work so far (J) on each part, and the time (s) and the positions (m) and velocities (m/s)
+    /// of their nodes when it was added up.
     pub loads: Vec<f64>,
 }
 

@@ -80,8 +80,13 @@ impl Work {
 
     fn of_nodes(&self, time: f64, at: Nodes<'_>, forces: &[DVec3]) -> Account {
         let some = |all: &[DVec3]| self.nodes.iter().map(|&node| all[node as usize]).collect();
-        let velocity = if self.is_fine { some(at.velocity) } else { Vec::new() };
-        Account { sums: Vec::new(), position: some(at.position), velocity, force: some(forces), time }
+        Account {
+            sums: Vec::new(),
+            position: some(at.position),
+            velocity: some(at.velocity),
+            force: some(forces),
+            time,
+        }
     }
 
     /// The sums with the work since one account, until another.
@@ -147,7 +152,7 @@ impl Work {
     pub(crate) fn load(&self, around: &Surroundings, numbers: &[f64], nodes: usize) -> bool {
         let Some((sums, [time, rest @ ..])) = numbers.split_at_checked(self.parts.len()) else { return false };
         let (vectors, []) = rest.as_chunks::<3>() else { return false };
-        if vectors.len() != self.nodes.len() * if self.is_fine { 2 } else { 1 } {
+        if vectors.len() != 2 * self.nodes.len() {
             return false;
         }
         let (position, velocity) = vectors.split_at(self.nodes.len());

@@ -118,8 +118,8 @@ impl World {
     pub(super) fn work(&self) -> Option<Vec<f64>> {
         let System { work, surroundings, .. } = &self.system;
         let (work, state) = (work.as_ref()?, &self.state);
-        if self.dynamics.is_recorded() {
-            work.load(surroundings, &state.memory.loads, state.position.len());
+        if self.dynamics.is_recorded() && !work.load(surroundings, &state.memory.loads, state.position.len()) {
+            return None;
         }
         Some(work.sums(surroundings, self.system.interval(state.steps).begin, state.nodes()))
     }
