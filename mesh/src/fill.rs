@@ -8,6 +8,7 @@ mod cubes;
 mod cuts;
 mod draft;
 mod embed;
+mod ends;
 mod facet;
 mod graded;
 mod lattice;
@@ -102,7 +103,7 @@ pub struct Thin {
     pub cubes: usize,
     /// The number of all cubes with a part of the body, thin or not. Separate parts in one cube count one each.
     pub of: usize,
-    /// The sum of the parts of thin ones that are inside, each at most 1.
+    /// The sum of what is inside of thin ones: of the mean thickness of the body in each, in sides of elements.
     pub filled: f64,
 }
 

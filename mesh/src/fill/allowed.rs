@@ -1,6 +1,6 @@
 //! How many elements may fill a surface.
 
-use super::aligned::Ends;
+use super::ends::Ends;
 use super::lattice::{SNAP, counts};
 use super::{Fill, FillError};
 use crate::{Measures, Surface};
@@ -15,7 +15,7 @@ const SIZES: RangeInclusive<f64> = 1e-50..=1e50;
 pub(super) const JOINED: usize = 4;
 
 /// Tetrahedra of a part thinner than this, in sides, are mostly shorter.
-const THIN: f64 = 0.6;
+const LEAST: f64 = 0.6;
 
 /// How many elements are allowed for the parts of a surface, and what tells how many they need.
 pub(super) struct Allowed {
@@ -47,17 +47,19 @@ pub(super) fn check(measures: &Measures, fill: Fill, allowed: &Allowed) -> Resul
     let needed = fill.each() * estimate(measures, side).min(places);
     let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
     if !(needed <= slack * most as f64 && is_sane) {
-        return Err(allowed.refused(side, needed.max(rows / 16.0), "about ", 1.0));
+        let visited = (rows / 16.0).max(places / 1024.0).max(1e-6 * counts[0] * most as f64);
+        let times = (visited / allowed.needed(side)).max(1.0);
+        return Err(allowed.refused(side, needed.max(visited), "about ", times));
     }
     if fill.is_cut() {
         // All points of the lattice are listed, with a layer of cubes outside.
-        let boxed: f64 = counts.into_iter().map(|count| count + 2.0).product();
-        if boxed > 8.0 * most as f64 + 1e6 {
-            return Err(allowed.too_many(side, boxed / 8.0, "about "));
+        let listed: f64 = counts.into_iter().map(|count| count + 2.0).product();
+        if listed > 8.0 * most as f64 + 1e6 {
+            return Err(allowed.too_many(side, listed / 8.0, "about "));
         }
         // Cubes are numbered by 32 bits.
-        if boxed > f64::from(i32::MAX) {
-            let message = format!("has a box of {boxed:.0e} cubes of side {side}, and at most 2e9 can be cut");
+        if listed > f64::from(i32::MAX) {
+            let message = format!("has a box of {listed:.0e} cubes of side {side}, and at most 2e9 can be cut");
             return Err(FillError::new(message, "use a larger side, or fill it with cubes"));
         }
     }
@@ -88,7 +90,7 @@ impl Allowed {
     fn needed(&self, side: f64) -> f64 {
         let of = |part: &Ends| match self.fill {
             // In a part so thin they are tried with half of the side, and all of a cube stand out of it.
-            Fill::Tetrahedra { .. } if part.size().min_element() < THIN * side => 192.0 * boxed(&part.measures, side),
+            Fill::Tetrahedra { .. } if part.size().min_element() < LEAST * side => 192.0 * boxed(&part.measures, side),
             Fill::Tetrahedra { .. } => {
                 let measures = part.stretched(side);
                 // Four stand about each face between two cubes, and about each one at the surface.

@@ -26,7 +26,8 @@ const SHORTEST: f64 = 0.5;
 pub(super) fn fill(surface: Surface, flaws: Flaws, side: f64, allowed: &Allowed) -> Result<Filled, FillError> {
     let mut shorter = side;
     while shorter >= SHORTEST * side {
-        if let Some(filled) = of_lattice(surface.clone(), flaws, shorter, allowed)? {
+        if let Some(mut filled) = of_lattice(surface.clone(), flaws, shorter, allowed)? {
+            filled.cage.thin.filled *= shorter / side;
             return Ok(filled);
         }
         shorter *= SHORTER;

@@ -1,7 +1,7 @@
 //! Surfaces filled with cubes.
 
 use crate::common::{apart, ball, block, ring, scan, together};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use localshape_mesh::{Fill, Filled, Group, Surface, fill};
 
 const MOST: usize = 1_000_000;
@@ -180,7 +180,7 @@ fn separate_parts_in_a_cube_do_not_grow_together() {
         assert!(!left.is_empty() && left.iter().all(|node| right.binary_search(node).is_err()), "{side}");
     }
     // A plate, thinner than a cube and in any direction, stays in one piece: both of its sides are in the same copies.
-    for turn in [glam::DQuat::IDENTITY, glam::DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize()] {
+    for turn in [DQuat::IDENTITY, DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize()] {
         let plate = block(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.03));
         let plate = Surface { points: plate.points.iter().map(|&point| turn * point).collect(), ..plate };
         let filled = cubes(&plate, 0.1);
@@ -422,6 +422,20 @@ fn the_side_that_is_offered_fits() {
             }
         }
     }
+}
+
+/// Few cubes hold a rod along the diagonal of a box, of which all cubes are visited.
+#[test]
+fn the_side_that_is_offered_has_few_places_in_its_box() {
+    let mut rod = block(DVec3::new(0.0, -1e-3, -1e-3), DVec3::new(1.7, 1e-3, 1e-3));
+    let turn = DQuat::from_rotation_arc(DVec3::X, DVec3::ONE.normalize());
+    rod.points.iter_mut().for_each(|point| *point = turn * *point);
+    let most = 60_000;
+    let refused = fill(&rod, Fill::Cubes { side: 9e-4 }, most).unwrap_err();
+    assert!(refused.message.ends_with("at most 60000 are allowed"), "{refused}");
+    let side = refused.fitting.expect("a side");
+    let filled = fill(&rod, Fill::Cubes { side }, most).unwrap_or_else(|error| panic!("{side}: {error}"));
+    assert!((100..most).contains(&filled.cage.elements.len()), "{side}");
 }
 
 #[test]
