@@ -159,10 +159,12 @@ impl Stretch {
         }
     }
 
-    /// A value in the unit of the numbers beside it, to three digits of the largest one.
+    /// A value in the unit of the numbers beside it, to three digits of the largest one, and two of the range.
     pub(super) fn in_words(&self, value: f64) -> String {
-        let largest = self.range[0].abs().max(self.range[1].abs()) / self.factor;
-        let power = libm::floor(libm::log10(largest.clamp(1e-300, 1e300))) - 2.0;
+        let [low, high] = self.range;
+        let [largest, span] =
+            [low.abs().max(high.abs()), high - low].map(|size| (size / self.factor).clamp(1e-300, 1e300));
+        let power = libm::floor((libm::log10(largest) - 2.0).min(libm::log10(span) - 1.0));
         let value = times_ten(libm::round(value / self.factor * libm::exp10(-power)), power);
         let text = if (-6.0..3.0).contains(&power) { value.to_string() } else { scientific(value) };
         with_minus(format!("{text} {}", self.unit)).trim_end().to_owned()

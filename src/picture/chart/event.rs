@@ -238,6 +238,8 @@ mod tests {
         assert_eq!(words(Diagnostic::ShapeError, &[error]), ["highest 102 mm at 50 ms"]);
         let volume = series(0, false, &[[0.0, 1.0], [0.05, 0.6], [3.0, 1.0]]);
         assert_eq!(words(Diagnostic::VolumeRatio, &[volume]), ["lowest 0.6 at 50 ms"]);
+        let near = series(0, false, &[[0.0, 1.0], [0.05, 0.9965], [3.0, 1.0]]);
+        assert_eq!(words(Diagnostic::VolumeRatio, &[near]), ["lowest 0.997 at 50 ms"]);
         // Beside an axis in micrometres, "< 0.1 mm" would say nothing; beside one in metres, −830 mm little.
         let small = series(0, false, &[[0.0, 0.0], [0.05, 3.141e-5], [3.0, 0.0]]);
         assert_eq!(words(Diagnostic::ShapeError, &[small]), ["highest 31.4 µm at 50 ms"]);

@@ -41,7 +41,7 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
         let size = quantity(value, unit) + &also;
         // Loads that rise or fall, and small ones beside a large one, may be seen as dots.
         let mut names = vec![format!("load {size}"), size];
-        if has_small(composer.scene, &scales, shortest_arrow(place.size(composer)) / pixels) {
+        if has_small(composer.scene, &scales, shortest_load(place.size(composer)) / pixels) {
             names.insert(0, format!("{}, dots: smaller loads", names[0]));
         }
         place.arrow(composer, names, value * metres * pixels)
@@ -56,7 +56,12 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
     straight.into_iter().chain(turning).collect()
 }
 
-/// Whether some load has at some time an arrow that is shorter than a length (m).
+/// The length that arrows of loads exceed, for arrows of a size (px). Shorter ones would be faint.
+fn shortest_load(size: f64) -> f64 {
+    (1.0 + arrows::FADING) * shortest_arrow(size)
+}
+
+/// Whether some load has at some time an arrow that is not longer than a length (m).
 fn has_small(scene: &Scene, scales: &Scales, shortest: f64) -> bool {
     scene.runs.iter().flat_map(|run| &run.loads).any(|load| {
         let metres = match load.pull() {
@@ -66,7 +71,7 @@ fn has_small(scene: &Scene, scales: &Scales, shortest: f64) -> bool {
         };
         let shares = || load.course().keys.iter().map(|&[_, share]| share);
         let [low, high] = [shares().reduce(f64::min), shares().reduce(f64::max)].map(|share| share.unwrap_or(1.0));
-        metres * if low * high > 0.0 { low.abs().min(high.abs()) } else { 0.0 } < shortest
+        metres * if low * high > 0.0 { low.abs().min(high.abs()) } else { 0.0 } <= shortest
     })
 }
 
@@ -181,14 +186,13 @@ impl Draft<'_> {
         faces_viewer.then(|| self.load([start, end], at))?
     }
 
-    /// The arrow of a load at a point (m). Where it is too short to be seen there is a dot in its place, or the load would seem to be none.
+    /// The arrow of a load at a point (m). A small load has a dot in its place, or it would seem to be none.
     fn load(&self, ends: [DVec3; 2], at: DVec3) -> Option<(f64, Item)> {
-        let length = self.pixel(ends[0])?.distance(self.pixel(ends[1])?);
-        let least = (1.0 + arrows::FADING) * shortest_arrow(arrows::size(self.element, self.scale.unit));
-        match length > least {
-            true => self.arrow(ends, 0.0, 1.0, arrows::with_halo),
-            false => Some((self.lens.project(at)?.1, self.dot(at, f64::INFINITY, self.composer.palette.text)?)),
+        let length = ends[0].distance(ends[1]) * self.element / self.scene.view.side;
+        if length > shortest_load(arrows::size(self.element, self.scale.unit)) {
+            return self.arrow(ends, 0.0, 1.0, arrows::with_halo);
         }
+        Some((self.lens.project(at)?.1, self.dot(at, f64::INFINITY, self.composer.palette.text)?))
     }
 
     /// An arc of a radius (m) and an angle (rad) about an axis, which ends with the head of an arrow.
