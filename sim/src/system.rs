@@ -4,7 +4,7 @@ use super::contact::{End, Felt, Impulses, Obstacle, Source, Stage, Timing};
 use super::crew::Crew;
 use super::grip::Grip;
 use super::limit::SpeedLimit;
-use super::model::{Free, Scratch};
+use super::model::{Projected, Scratch};
 use super::motion::Interval;
 use super::part::Part;
 use super::state::{Divergence, Memory, Nodes, Runaway, State};
@@ -160,7 +160,7 @@ impl System {
         for part in &self.parts {
             let Some(projection) = &part.projection else { continue };
             let (memory, nodes) = (part.memory.clone(), part.nodes.clone());
-            let own = Free {
+            let own = Projected {
                 position: &mut next.position[nodes.clone()],
                 inverse_mass: &inverse_mass[nodes.clone()],
                 impulse: &mut impulse[nodes.clone()],

@@ -104,7 +104,7 @@ impl Watch {
     }
 }
 
-/// The message about surfaces that cross each other in a frame of a run, though contact keeps them apart; `None` if none do.
+/// The message about surfaces that cross or lie in each other in a frame of a run, though contact keeps them apart; `None` if none do.
 pub(crate) fn crossing(scene: &Scene, frame: &RunFrame) -> Option<String> {
     let RunFrame { run, snapshot, .. } = frame;
     let (of, count) = (&scene.runs[*run], snapshot.diagnostics.crossings);
@@ -116,11 +116,14 @@ pub(crate) fn crossing(scene: &Scene, frame: &RunFrame) -> Option<String> {
     let names: Vec<_> = crossed.map(|(&body, _)| &scene.bodies[body].name).filter(|name| !name.is_empty()).collect();
     let of_bodies = if names.is_empty() { "" } else { ", of " };
     let (names, time) = (list(&names, "and", |name| format!("“{name}”")), short(snapshot.time));
-    let (shorter, pairs) = (short(of.step / 2.0), several(count as u64, "crossing"));
+    let (shorter, pairs) = (short(of.step / 2.0), several(count as u64, "place"));
     let step = format!(
         "take a shorter step, such as {shorter} s; if that does not help, they are crumpled too much or dragged into each other"
     );
-    Some(format!("surfaces cross at {time} s in “{}”{of_bodies}{names} ({pairs}): {step}", of.name))
+    Some(format!(
+        "surfaces cross or lie in each other at {time} s in “{}”{of_bodies}{names} ({pairs}): {step}",
+        of.name
+    ))
 }
 
 /// The pairs of bodies among the `wanted` ones that overlap with nodes at given positions (m), in order. Bodies that touch do not overlap.

@@ -121,5 +121,8 @@ fn crossings_of_a_body_without_a_name_are_told() {
     let mut frame = Runner::new(&scene, &[0]).frame(0).runs.remove(0);
     (frame.snapshot.diagnostics.crossings, frame.snapshot.of_bodies[0].crossings) = (11.0, 11.0);
     let told = crossing(&scene, &frame).expect("a message");
-    assert!(told.starts_with("surfaces cross at 0 s in “mat” (11 crossings): take a shorter step"), "{told}");
+    assert!(
+        told.starts_with("surfaces cross or lie in each other at 0 s in “mat” (11 places): take a shorter step"),
+        "{told}"
+    );
 }

@@ -133,7 +133,7 @@ pub trait ForceModel: Send + Sync {
 pub trait Projection: Send + Sync {
     /// Moves nodes that have gone freely for a step (s), none by more than its constraints demand in that step, from `position` (m) to the end of
     /// the step. Writes every entry of the `next` memory of the model.
-    fn project(&self, nodes: Free<'_>, step: f64, memory: &[f64], next: &mut [f64]);
+    fn project(&self, nodes: Projected<'_>, step: f64, memory: &[f64], next: &mut [f64]);
 
     /// How many times as much as its stiffness says the body gives way in uniform strain, with a step (s).
     fn softening(&self, step: f64) -> f64 {
@@ -144,7 +144,7 @@ pub trait Projection: Send + Sync {
 
 /// The nodes of a body that have gone freely for a step.
 #[derive(Debug)]
-pub struct Free<'a> {
+pub struct Projected<'a> {
     /// The position of each node (m).
     pub position: &'a mut [DVec3],
     /// The inverse mass of each node (1/kg), zero for nodes that a kinematic constraint holds.

@@ -358,6 +358,15 @@ fn a_body_inside_another_is_told() {
             bodies.reverse();
         }
     }
+    let half = DVec3::splat(3.0 * SIDE);
+    let shape = Shape::Box { centre: DVec3::ZERO, half, rotation: DQuat::IDENTITY };
+    for (at, expected) in [(0.0, 24), (6.0, 0)] {
+        let around = Surroundings { obstacles: vec![obstacle(shape.clone())], ..with_contacts(0.0, 0.0) };
+        let placed = [(Arc::clone(&small), still(DVec3::X * (at * SIDE)))];
+        let world = by(Integrator::SemiImplicitEuler, Kernel::Fast, &placed, 1e3, 0.02, around);
+        let count: usize = world.crossings().expect("surfaces").iter().map(|(_, count)| count).sum();
+        assert_eq!(count, expected, "{at} from a box");
+    }
 }
 
 /// A state that is taken brings its sums, and one without sums begins anew.

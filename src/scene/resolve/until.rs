@@ -106,10 +106,12 @@ fn rest(scene: &Scene, number: usize) -> Result<AtRest, Restless> {
         for (Swinging { nodes, still, greatest }, &most) in bodies.iter_mut().zip(&most) {
             let (left, load) = (size(nodes.clone().map(gained)), size(loads[nodes.clone()].iter().copied()));
             *greatest = [greatest[0].max(most), greatest[1].max(left)];
-            let share = match load > 0.0 {
-                true => left / load,
-                false if left == 0.0 || most <= *still => 0.0,
-                false => left / greatest[1],
+            let share = if load > 0.0 {
+                left / load
+            } else if left > 0.0 && most > *still {
+                left / greatest[1]
+            } else {
+                0.0
             };
             residual = residual.max(share);
             is_at_rest &= most <= *still || most <= STILL * greatest[0] && share <= BALANCED;

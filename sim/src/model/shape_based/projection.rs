@@ -3,7 +3,7 @@
 use super::{Elements, Fit, ShapeBased, Stretch, mean, moment_at_rest};
 use crate::body::Body;
 use crate::material::spread;
-use crate::model::{Free, Projection};
+use crate::model::{Projected, Projection};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ impl ShapeBased {
 }
 
 impl Projection for Elements {
-    fn project(&self, mut all: Free<'_>, step: f64, memory: &[f64], next: &mut [f64]) {
+    fn project(&self, mut all: Projected<'_>, step: f64, memory: &[f64], next: &mut [f64]) {
         let (width, mut slopes, mut globals) = (self.solver.width(), Vec::new(), 0.0);
         for element in 0..self.body.elements.len() {
             let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
@@ -77,8 +77,8 @@ struct Moved<'a> {
 impl Moved<'_> {
     /// Projects the constraint `C` with the energy `k/2 C²`, given `C²` (m²) and `C ∇C` (m) of each node. With a multiplier that begins
     /// at 0, `λ = −C / (Σ w |∇C|² + α̃)` and `Δx = w ∇C λ`. The impulse on a node is `∇C λ/ΔT`.
-    fn project(&self, squared: f64, slopes: &[DVec3], all: &mut Free<'_>) {
-        let Free { position, inverse_mass, impulse } = all;
+    fn project(&self, squared: f64, slopes: &[DVec3], all: &mut Projected<'_>) {
+        let Projected { position, inverse_mass, impulse } = all;
         let of_nodes = || self.nodes.iter().map(|&node| node as usize).zip(slopes);
         let sum: f64 = of_nodes().map(|(node, slope)| inverse_mass[node] * slope.length_squared()).sum();
         let below = sum + self.compliance * squared;
