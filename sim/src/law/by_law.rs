@@ -64,15 +64,19 @@ impl<W: Law> Energy for ByLaw<W> {
         let with_shares = share.is_some();
         let measure = |range| self.set.run(Energies { by: self, position, memory, range, with_shares });
         let found: Vec<Found> = crew.map_chunks(self.elements().len(), measure);
-        if let Some(share) = share {
-            let (elements, shares) = (self.elements(), found.iter().flat_map(|chunk| &chunk.shares));
-            let shares: Vec<f64> = shares.copied().collect();
-            (0..elements.len()).for_each(|at| share(at, &elements[at], &shares[elements.range(at)]));
-        }
-        let energy = found.iter().map(|chunk| chunk.energy).sum();
-        let residual = found.iter().fold(0.0, |most: f64, chunk| most.max(chunk.residual));
+        let (energy, residual) = total(&found, self.elements(), share);
         Report { energy: Some(energy), residual: W::HAS_RESIDUAL.then_some(residual) }
     }
+}
+
+/// The energy (J) and the largest residual of all chunks. Calls `share`, if given, for each element.
+fn total(chunks: &[Found], elements: &IndexLists, share: Option<&mut Share<'_>>) -> (f64, f64) {
+    if let Some(share) = share {
+        let shares: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.shares).copied().collect();
+        (0..elements.len()).for_each(|at| share(at, &elements[at], &shares[elements.range(at)]));
+    }
+    let energy = chunks.iter().map(|chunk| chunk.energy).sum();
+    (energy, chunks.iter().fold(0.0, |most: f64, chunk| most.max(chunk.residual)))
 }
 
 /// Computes the energies of consecutive elements.

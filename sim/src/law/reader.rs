@@ -45,7 +45,6 @@ impl<L: Lanes> Reader<L> {
 
     /// Reads elements at rest, and with positions (m) and velocities (m/s) of the nodes; without velocities they are at rest.
     /// `parts` are the relative stiffnesses of the elements.
-    #[inline(always)]
     pub(crate) fn read(
         &mut self,
         group: &Group<'_>,
@@ -92,7 +91,6 @@ impl<L: Lanes> Reader<L> {
     }
 
     /// Reads the memory of `count` elements from one on.
-    #[inline(always)]
     pub(crate) fn recall(&mut self, memory: &[f64], first: usize, count: usize, width: usize) {
         self.memory.clear();
         self.memory.resize(width, [0.0; MOST]);

@@ -16,7 +16,7 @@ pub(super) struct Elements<'a, W> {
     pub(super) law: &'a W,
     pub(super) commit: bool,
     pub(super) tally: &'a Tally,
-    /// [`General::is_large`](super::General::is_large).
+    /// [`Arrays::is_large`](super::Arrays::is_large).
     pub(super) is_large: bool,
 }
 

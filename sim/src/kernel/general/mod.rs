@@ -11,6 +11,7 @@
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 
 mod elements;
+pub(super) mod layout;
 mod pass;
 
 use super::memory::Aligned;
@@ -19,13 +20,12 @@ use super::{Around, Conditions, Lost};
 use crate::body::Body;
 use crate::crew::Crew;
 use crate::gather::Group;
-use crate::hull::bounds;
 use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::law::{Law, RECORD, Reader};
 use crate::lists::IndexLists;
 use crate::tally::Tally;
 use glam::DVec3;
-use pass::{OnePart, SharedNodes};
+use pass::{Moved, OwnNodes, PartForces, SharedNodes};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -36,11 +36,17 @@ const VALENCE: usize = 7;
 /// Doubles in the sum of a node: the force in x, y, z, and padding.
 const SUM: usize = 4;
 
-/// The elements of a body, in parts.
+/// The elements of a body and the law of their forces.
 #[derive(Clone)]
 pub(crate) struct General<W> {
-    set: Set,
     law: W,
+    arrays: Arrays,
+}
+
+/// The numbers of elements and nodes, in parts. What is done with them here is compiled once, and not for each law.
+#[derive(Clone)]
+struct Arrays {
+    set: Set,
     /// ΔT (s).
     step: f64,
     parts: Vec<Part>,
@@ -51,6 +57,8 @@ pub(crate) struct General<W> {
     places: Vec<RecordAddress>,
     /// Number of elements.
     elements: usize,
+    /// How many numbers each element remembers.
+    memory: usize,
     tally: Tally,
 }
 
@@ -108,108 +116,16 @@ impl<W: Law> General<W> {
     /// The elements of a body on which a law acts. If their relative stiffness is not 1, the law is [`Filled`](crate::law::Filled).
     pub(crate) fn new(law: W, body: &Body, conditions: &Conditions) -> Self {
         let (own, fill) = (law.elements(body), law.relative_stiffness(body));
-        let elements = own.as_ref().unwrap_or(&body.elements);
-        let Body { rest, mass, .. } = body;
-        let parts = cut(elements, along_curve(elements, rest));
-        // The first part of each node, and whether it has several.
-        let (mut first, mut is_shared) = (vec![NONE; rest.len()], vec![false; rest.len()]);
-        let mut valence = vec![0.0; rest.len()];
-        for (part, own) in (0..).zip(&parts) {
-            for &element in own {
-                let filled = fill.as_ref().map_or(1.0, |fill| fill[element as usize]);
-                for &node in &elements[element as usize] {
-                    let node = node as usize;
-                    is_shared[node] |= first[node] != NONE && first[node] != part;
-                    first[node] = first[node].min(part);
-                    valence[node] += filled;
-                }
-            }
-        }
-        let mut places = vec![RecordAddress { part: 0, record: 0 }; rest.len()];
-        let mut shared_places: Vec<(u32, RecordAddress)> = Vec::new();
-        let mut made = Vec::with_capacity(parts.len());
-        let mut record = vec![NONE; rest.len()];
-        for (part, own) in (0u32..).zip(&parts) {
-            // Nodes in the order in which the elements use them.
-            let (mut index, mut of_others) = (Vec::new(), Vec::new());
-            for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
-                let seen = &mut record[node as usize];
-                if *seen == NONE {
-                    *seen = 0;
-                    if is_shared[node as usize] { &mut of_others } else { &mut index }.push(node);
-                }
-            }
-            if part == 0 {
-                index.extend((0..rest.len() as u32).filter(|&node| first[node as usize] == NONE));
-            }
-            let alone = index.len();
-            index.resize(alone.next_multiple_of(MOST), 0);
-            let whole = index.len();
-            for (at, &node) in (0..).zip(&index[..alone]) {
-                places[node as usize] = RecordAddress { part, record: at };
-                record[node as usize] = at;
-            }
-            for (at, &node) in (whole as u32..).zip(&of_others) {
-                record[node as usize] = at;
-                shared_places.push((node, RecordAddress { part, record: at }));
-                if first[node as usize] == part {
-                    places[node as usize] = RecordAddress { part, record: at };
-                }
-            }
-            index.extend(&of_others);
-            let mut records = Aligned::zeros((index.len() + 1) * RECORD);
-            let is_node = |at: usize| at < alone || at >= whole;
-            for (at, &node) in index.iter().enumerate().filter(|(at, _)| is_node(*at)) {
-                let record = &mut records.as_mut_slice()[at * RECORD..][..RECORD];
-                record[INVERSE_MASS] = 1.0 / mass[node as usize];
-                record[VALENCE] = valence[node as usize];
-            }
-            // Lanes without an element use this record.
-            let nothing = index.len() as u32;
-            let mut counts: Vec<usize> = own.iter().map(|&element| elements[element as usize].len()).collect();
-            counts.sort_unstable();
-            counts.dedup();
-            let class = |corners: usize| {
-                let of_class: Vec<u32> =
-                    own.iter().copied().filter(|&element| elements[element as usize].len() == corners).collect();
-                let prepare = Prepare { law: &law, body, lists: elements, fill: fill.as_deref(), elements: &of_class };
-                let constants = conditions.set.run(prepare);
-                Class::new::<W>(elements, of_class, constants, &record, nothing)
-            };
-            made.push(Part {
-                own: whole / MOST,
-                records,
-                sums: Aligned::zeros(of_others.len() * SUM),
-                accelerations: Aligned::zeros(whole * 3),
-                kept: Aligned::zeros((index.len() + 1) * RECORD),
-                classes: counts.into_iter().map(class).collect(),
-                index,
-            });
-            for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
-                record[node as usize] = NONE;
-            }
-        }
-        // In the order of the first part, so that nodes moved one after the other are neighbours in memory.
-        shared_places.sort_by_key(|&(node, place)| {
-            let RecordAddress { part, record } = places[node as usize];
-            (part, record, place.part)
-        });
-        let mut shared =
-            Shared { index: Vec::new(), starts: Vec::new(), places: Vec::new(), accelerations: Aligned::zeros(0) };
-        for of_node in shared_places.chunk_by(|a, b| a.0 == b.0) {
-            let node = of_node[0].0;
-            places[node as usize] = RecordAddress { part: NONE, record: shared.index.len() as u32 };
-            shared.index.push(node);
-            shared.starts.push(shared.places.len() as u32);
-            shared.places.extend(of_node.iter().map(|(_, place)| place));
-        }
-        let whole = shared.index.len().next_multiple_of(MOST);
-        shared.index.resize(whole, 0);
-        shared.starts.resize(whole + 1, shared.places.len() as u32);
-        shared.accelerations = Aligned::zeros(whole * 3);
-        let (elements, tally) = (elements.len(), Tally::default());
+        let (lists, fill) = (own.as_ref().unwrap_or(&body.elements), fill.as_deref());
+        let constants = |elements: &[u32]| {
+            let alike = Alike { body, lists, fill, elements };
+            conditions.set.run(Prepare { law: &law, alike })
+        };
+        let (parts, shared, places) = layout::divide(lists, fill, body, W::MEMORY, &constants);
         let &Conditions { step, set, .. } = conditions;
-        Self { set, law, step, parts: made, shared, sums: Vec::new(), places, elements, tally }
+        let (sums, elements, memory, tally) = (Vec::new(), lists.len(), W::MEMORY, Tally::default());
+        let arrays = Arrays { set, step, parts, shared, sums, places, elements, memory, tally };
+        Self { law, arrays }
     }
 }
 
@@ -220,63 +136,18 @@ impl Shared {
     }
 }
 
-/// The elements in the order of their centres at rest on the Morton curve.
-fn along_curve(elements: &IndexLists, rest: &[DVec3]) -> Vec<u32> {
-    let (low, high) = bounds(rest);
-    let cells = f64::from(1u32 << 20) / (high - low).max_element().max(f64::MIN_POSITIVE);
-    let spread = |value: f64| (0..21).fold(0u64, |all, bit| all | (value as u64 >> bit & 1) << (3 * bit));
-    let key = |nodes: &[u32]| {
-        let middle = nodes.iter().map(|&node| rest[node as usize] - low).sum::<DVec3>() / nodes.len() as f64;
-        let [x, y, z] = (middle * cells).to_array().map(spread);
-        x | y << 1 | z << 2
-    };
-    let mut keyed: Vec<(u64, u32)> = elements.iter().map(key).zip(0..).collect();
-    keyed.sort_unstable();
-    keyed.into_iter().map(|(_, element)| element).collect()
-}
-
-/// The number of parts of elements.
-pub(super) fn parts(elements: &IndexLists) -> usize {
-    /// Corners in a part: the data of their nodes stay in the second-level cache.
-    const CORNERS: usize = 32768;
-    elements.indices().len().div_ceil(CORNERS).max(1)
-}
-
 /// A body of more parts exceeds the share of the last cache that it can count on: prefetching what is read in no order is then
 /// worth its instructions. So many parts have 11 MB if elements have eight corners.
 pub(super) const SMALL: usize = 8;
 
-/// Divides elements into parts of about equal work.
-fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
-    let (all, parts) = (elements.indices().len(), parts(elements));
-    let mut cut = vec![Vec::new(); parts];
-    let mut before = 0;
-    for element in order {
-        cut[before * parts / all].push(element);
-        before += elements[element as usize].len();
-    }
-    cut
-}
-
-impl Class {
-    /// Elements of lists, with the same number of corners. Lanes without an element use the record `nothing`.
-    fn new<W: Law>(lists: &IndexLists, elements: Vec<u32>, constants: Aligned, record: &[u32], nothing: u32) -> Self {
-        let corners = lists[elements[0] as usize].len();
-        let blocks = elements.len().div_ceil(MOST);
-        let mut nodes = vec![nothing * RECORD as u32; blocks * corners * MOST];
-        for (at, &element) in elements.iter().enumerate() {
-            for (corner, &node) in lists[element as usize].iter().enumerate() {
-                nodes[(at / MOST * corners + corner) * MOST + at % MOST] = record[node as usize] * RECORD as u32;
-            }
-        }
-        let [memory, kept] = [0; 2].map(|_| Aligned::zeros(blocks * W::MEMORY * MOST));
-        Self { corners, elements, nodes, constants, memory, kept }
-    }
-}
-
 /// Computes the constants of elements with the same number of corners.
 struct Prepare<'a, W> {
     law: &'a W,
+    alike: Alike<'a>,
+}
+
+/// Elements with the same number of corners.
+struct Alike<'a> {
     body: &'a Body,
     lists: &'a IndexLists,
     /// The relative stiffness of each of the lists; `None` if all are 1.
@@ -289,29 +160,66 @@ impl<W: Law> Work for Prepare<'_, W> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Aligned {
-        let Self { law, body, lists, fill, elements } = self;
+        let Self { law, alike } = self;
+        let count = alike.elements.len();
         let mut reader = Reader::<L>::new();
         let mut all = Aligned::zeros(0);
-        for first in (0..elements.len().next_multiple_of(MOST)).step_by(L::WIDTH) {
-            // The last element fills the lanes that are left.
-            let element = |lane: usize| elements[(first + lane).min(elements.len() - 1)] as usize;
-            let group = Group::of(|lane| &lists[element(lane)]);
-            let parts = each!(8, lane => fill.map_or(1.0, |fill| fill[element(lane)]));
-            reader.read(&group, body, &body.rest, None, &parts);
-            let constants = reader.prepare(law);
-            if first == 0 {
-                all = Aligned::zeros(elements.len().div_ceil(MOST) * constants.len());
-            }
-            let block = &mut all.as_mut_slice()[first / MOST * constants.len()..][..constants.len()];
-            for (row, constants) in block.chunks_exact_mut(MOST).zip(constants.chunks_exact(MOST)) {
-                row[first % MOST..][..L::WIDTH].copy_from_slice(&constants[..L::WIDTH]);
-            }
+        for first in (0..count.next_multiple_of(MOST)).step_by(L::WIDTH) {
+            alike.read(first, &mut reader);
+            put(&mut all, reader.prepare(law), first..first + L::WIDTH, count);
         }
         all
     }
 }
 
+impl Alike<'_> {
+    /// Reads those from one on into lanes, at rest.
+    fn read<L: Lanes>(&self, first: usize, reader: &mut Reader<L>) {
+        let Self { body, lists, fill, elements, .. } = *self;
+        // The last element fills the lanes that are left.
+        let element = |lane: usize| elements[(first + lane).min(elements.len() - 1)] as usize;
+        let group = Group::of(|lane| &lists[element(lane)]);
+        let parts = each!(8, lane => fill.map_or(1.0, |fill| fill[element(lane)]));
+        reader.read(&group, body, &body.rest, None, &parts);
+    }
+}
+
+/// Adds the constants of some of so many elements, which are rows of [`MOST`] numbers, to those before.
+fn put(all: &mut Aligned, constants: &[f64], lanes: Range<usize>, elements: usize) {
+    if lanes.start == 0 {
+        *all = Aligned::zeros(elements.div_ceil(MOST) * constants.len());
+    }
+    let block = &mut all.as_mut_slice()[lanes.start / MOST * constants.len()..][..constants.len()];
+    for (row, constants) in block.chunks_exact_mut(MOST).zip(constants.chunks_exact(MOST)) {
+        row[lanes.start % MOST..][..lanes.len()].copy_from_slice(&constants[..lanes.len()]);
+    }
+}
+
 impl<W: Law> General<W> {
+    /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
+    /// fast.
+    fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
+        let Self { law, arrays } = self;
+        let moved = Moved { arrays, pass, around, of_node: law.of_node() };
+        let lost = first_lost(crew, arrays.parts.len(), |me, parts| {
+            let sums = &arrays.sums[me];
+            let one = |part| {
+                if pass.stage.has_forces() {
+                    arrays.set.run(PartForces { law, arrays, part, sums, commit: pass.commit });
+                }
+                arrays.set.run(OwnNodes { part, sums, moved })
+            };
+            parts.map(one).fold(NONE, u32::min)
+        });
+        let of_shared = first_lost(crew, arrays.shared.index.len() / MOST, |_, blocks| {
+            arrays.set.run(SharedNodes { blocks, moved })
+        });
+        let lost = lost.min(of_shared);
+        (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
+    }
+}
+
+impl Arrays {
     /// Whether it has more parts than are [`SMALL`].
     fn is_large(&self) -> bool {
         self.parts.len() > SMALL
@@ -319,7 +227,7 @@ impl<W: Law> General<W> {
 
     /// Calls `each` with each number that elements remember, and its place in the memory of the model.
     fn each_number(&mut self, mut each: impl FnMut(&mut f64, usize)) {
-        let width = W::MEMORY;
+        let width = self.memory;
         for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
             let numbers = class.memory.as_mut_slice();
             for (at, &element) in class.elements.iter().enumerate() {
@@ -331,20 +239,64 @@ impl<W: Law> General<W> {
         }
     }
 
-    /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
-    /// fast.
-    fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
-        let (body, step, of_node) = (self, self.step, self.law.of_node());
-        let lost = first_lost(crew, self.parts.len(), |me, parts| {
-            let one = |part| self.set.run(OnePart { body, part, sums: &body.sums[me], pass, around });
-            parts.map(one).fold(NONE, u32::min)
-        });
-        let of_shared = first_lost(crew, self.shared.index.len() / MOST, |_, blocks| {
-            let (shared, parts, is_large) = (&body.shared, &body.parts[..], body.is_large());
-            self.set.run(SharedNodes { shared, parts, is_large, blocks, pass, around, of_node, step })
-        });
-        let lost = lost.min(of_shared);
-        (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
+    /// Takes what elements remember.
+    fn load(&mut self, memory: &[f64]) {
+        self.each_number(|number, at| *number = memory[at]);
+        self.tally.load(memory.get(self.elements * self.memory));
+    }
+
+    /// Writes what elements remember.
+    fn store(&mut self, memory: &mut [f64]) {
+        self.each_number(|number, at| memory[at] = *number);
+        self.tally.store(memory.get_mut(self.elements * self.memory));
+    }
+
+    fn node(&mut self, node: usize) -> (DVec3, DVec3) {
+        let RecordAddress { part, record } = match self.places[node] {
+            RecordAddress { part: NONE, record } => self.shared.of(record as usize)[0],
+            place => place,
+        };
+        let records = self.parts[part as usize].records.as_mut_slice();
+        let (records, _) = records.as_chunks::<RECORD>();
+        let [px, py, vx, vy, pz, vz, ..] = records[record as usize];
+        (DVec3::new(px, py, pz), DVec3::new(vx, vy, vz))
+    }
+
+    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
+        let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
+        let Self { parts, shared, places, .. } = self;
+        let mut put = |place: RecordAddress| {
+            let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
+            record[..values.len()].copy_from_slice(&values);
+        };
+        match places[node] {
+            RecordAddress { part: NONE, record } => shared.of(record as usize).iter().for_each(|&place| put(place)),
+            place => put(place),
+        }
+    }
+
+    fn keep(&mut self) {
+        for part in &mut self.parts {
+            part.kept.copy_from(&mut part.records);
+            part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.memory));
+        }
+        self.tally.keep();
+    }
+
+    fn restore(&mut self) {
+        for part in &mut self.parts {
+            part.records.copy_from(&mut part.kept);
+            part.classes.iter_mut().for_each(|class| class.memory.copy_from(&mut class.kept));
+        }
+        self.tally.restore();
+    }
+
+    /// Sees to it that there are sums for so many threads.
+    fn prepare_sums(&mut self, threads: usize) {
+        if self.sums.len() < threads {
+            let most = self.parts.iter().map(|part| part.index.len() + 1).max().unwrap_or(0);
+            self.sums.resize_with(threads, || Aligned::zeros(most * SUM));
+        }
     }
 }
 
@@ -376,40 +328,20 @@ pub(super) fn first_of(one: u32, lanes: u32, held: &[bool], index: impl Fn(usize
 impl<W: Law> Stepper for General<W> {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
         self.place(position, velocity);
-        self.each_number(|number, at| *number = memory[at]);
-        self.tally.load(memory.get(self.elements * W::MEMORY));
+        self.arrays.load(memory);
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
         self.read(position, velocity);
-        self.each_number(|number, at| memory[at] = *number);
-        self.tally.store(memory.get_mut(self.elements * W::MEMORY));
+        self.arrays.store(memory);
     }
 
-    #[inline]
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
-        let RecordAddress { part, record } = match self.places[node] {
-            RecordAddress { part: NONE, record } => self.shared.of(record as usize)[0],
-            place => place,
-        };
-        let records = self.parts[part as usize].records.as_mut_slice();
-        let (records, _) = records.as_chunks::<RECORD>();
-        let [px, py, vx, vy, pz, vz, ..] = records[record as usize];
-        (DVec3::new(px, py, pz), DVec3::new(vx, vy, vz))
+        self.arrays.node(node)
     }
 
-    #[inline]
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
-        let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
-        let Self { parts, shared, places, .. } = self;
-        let mut put = |place: RecordAddress| {
-            let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
-            record[..values.len()].copy_from_slice(&values);
-        };
-        match places[node] {
-            RecordAddress { part: NONE, record } => shared.of(record as usize).iter().for_each(|&place| put(place)),
-            place => put(place),
-        }
+        self.arrays.set_node(node, position, velocity);
     }
 
     fn is_damped(&self) -> bool {
@@ -421,26 +353,15 @@ impl<W: Law> Stepper for General<W> {
     }
 
     fn keep(&mut self) {
-        for part in &mut self.parts {
-            part.kept.copy_from(&mut part.records);
-            part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.memory));
-        }
-        self.tally.keep();
+        self.arrays.keep();
     }
 
     fn restore(&mut self) {
-        for part in &mut self.parts {
-            part.records.copy_from(&mut part.kept);
-            part.classes.iter_mut().for_each(|class| class.memory.copy_from(&mut class.kept));
-        }
-        self.tally.restore();
+        self.arrays.restore();
     }
 
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
-        if self.sums.len() < crew.threads() {
-            let most = self.parts.iter().map(|part| part.index.len() + 1).max().unwrap_or(0);
-            self.sums.resize_with(crew.threads(), || Aligned::zeros(most * SUM));
-        }
+        self.arrays.prepare_sums(crew.threads());
         some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
     }
 }

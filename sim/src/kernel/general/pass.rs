@@ -1,7 +1,7 @@
-//! One pass: the elements of a part and the update of its nodes, then the update of the nodes of several parts.
+//! One pass: the forces of the elements of a part and the update of its nodes, then the update of the nodes of several parts.
 
 use super::elements::Elements;
-use super::{General, NONE, Part, RecordAddress, SUM, Shared, first_of};
+use super::{Arrays, NONE, RecordAddress, SUM, first_of};
 use crate::kernel::Around;
 use crate::kernel::memory::Aligned;
 use crate::kernel::stepper::Pass;
@@ -10,33 +10,62 @@ use crate::lanes::{Lanes, MOST, Work, each};
 use crate::law::{Law, RECORD};
 use std::ops::Range;
 
-/// The elements of a part, and the update of the nodes of this part only.
-pub(super) struct OnePart<'a, W> {
-    pub(super) body: &'a General<W>,
+/// The forces of the elements of a part.
+pub(super) struct PartForces<'a, W> {
+    pub(super) law: &'a W,
+    pub(super) arrays: &'a Arrays,
     pub(super) part: usize,
     /// Zeros, at least one row more than the part has records.
     pub(super) sums: &'a Aligned,
-    pub(super) pass: Pass,
-    pub(super) around: Around<'a>,
+    /// [`Pass::commit`].
+    pub(super) commit: bool,
 }
 
-impl<W: Law> Work for OnePart<'_, W> {
+impl<W: Law> Work for PartForces<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { law, arrays, part, sums, commit } = self;
+        let (part, tally, is_large) = (&arrays.parts[part], &arrays.tally, arrays.is_large());
+        for class in &part.classes {
+            Elements { part, sums, class, law, commit, tally, is_large }.add::<L>();
+        }
+    }
+}
+
+/// How nodes are moved in a pass.
+#[derive(Clone, Copy)]
+pub(super) struct Moved<'a> {
+    pub(super) arrays: &'a Arrays,
+    pub(super) pass: Pass,
+    pub(super) around: Around<'a>,
+    /// [`Law::of_node`].
+    pub(super) of_node: [f64; 2],
+}
+
+impl<'a> Moved<'a> {
+    #[inline(always)]
+    fn update<L: Lanes>(&self) -> Own<'a, L> {
+        let update = NodeUpdate::<L>::new(self.pass.stage, self.arrays.step, self.pass.number, self.around);
+        Own { update, of_node: self.of_node }
+    }
+}
+
+/// The update of the nodes of one part only, by the sums of its forces.
+pub(super) struct OwnNodes<'a> {
+    pub(super) part: usize,
+    pub(super) sums: &'a Aligned,
+    pub(super) moved: Moved<'a>,
+}
+
+impl Work for OwnNodes<'_> {
     type Output = u32;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let part = &self.body.parts[self.part];
-        let Pass { stage, number, commit, .. } = self.pass;
-        if stage.has_forces() {
-            for class in &part.classes {
-                let tally = &self.body.tally;
-                let is_large = self.body.is_large();
-                let (law, sums) = (&self.body.law, self.sums);
-                Elements { part, sums, class, law, commit, tally, is_large }.add::<L>();
-            }
-        }
-        let update = NodeUpdate::<L>::new(stage, self.body.step, number, self.around);
-        let own = Own { update, of_node: self.body.law.of_node() };
+        let part = &self.moved.arrays.parts[self.part];
+        let own = self.moved.update::<L>();
         let (records, sums) = (part.records.pointer(), self.sums.pointer());
         let mut lost = NONE;
         for first in (0..part.own * MOST).step_by(L::WIDTH) {
@@ -47,7 +76,7 @@ impl<W: Law> Work for OnePart<'_, W> {
                 let sum = own.update.pushed([x, y, z], |lane| part.index[first + lane] as usize);
                 let node = |lane: usize| part.index[first + lane] as usize;
                 let lanes = own.advance(|lane| records.add((first + lane) * RECORD), sum, accelerations, node);
-                lost = first_of(lost, lanes, self.around.held, |lane| part.index[first + lane]);
+                lost = first_of(lost, lanes, self.moved.around.held, |lane| part.index[first + lane]);
             }
         }
         // Zeros for the next part, and sums for `SharedNodes`. The last row belongs to lanes without an element.
@@ -125,16 +154,8 @@ impl<L: Lanes> Own<'_, L> {
 
 /// The update of the nodes that belong to several parts.
 pub(super) struct SharedNodes<'a> {
-    pub(super) shared: &'a Shared,
-    pub(super) parts: &'a [Part],
-    pub(super) is_large: bool,
     pub(super) blocks: Range<usize>,
-    pub(super) pass: Pass,
-    pub(super) around: Around<'a>,
-    /// [`Law::of_node`].
-    pub(super) of_node: [f64; 2],
-    /// ΔT (s).
-    pub(super) step: f64,
+    pub(super) moved: Moved<'a>,
 }
 
 impl Work for SharedNodes<'_> {
@@ -142,8 +163,9 @@ impl Work for SharedNodes<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { shared, parts, is_large, blocks, pass: Pass { stage, number, .. }, around, of_node, step } = self;
-        let own = Own { update: NodeUpdate::<L>::new(stage, step, number, around), of_node };
+        let Self { blocks, moved } = self;
+        let Arrays { shared, parts, .. } = moved.arrays;
+        let own = moved.update::<L>();
         let record = |place: &RecordAddress| {
             parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD)
         };
@@ -154,7 +176,7 @@ impl Work for SharedNodes<'_> {
         let mut lost = NONE;
         for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {
             let places = |lane: usize| shared.of(first + lane);
-            if is_large {
+            if moved.arrays.is_large() {
                 let start = |lane: usize| shared.starts[shared.index.len().min(first + lane)] as usize;
                 for place in &shared.places[start(2 * L::WIDTH)..start(3 * L::WIDTH)] {
                     L::expect(record(place));
@@ -179,7 +201,7 @@ impl Work for SharedNodes<'_> {
                 let sum = own.update.pushed([x, y, z], |lane| shared.index[first + lane] as usize);
                 let node = |lane: usize| shared.index[first + lane] as usize;
                 let lanes = own.advance(|lane| rows[lane], sum, accelerations, node);
-                lost = first_of(lost, lanes, around.held, |lane| shared.index[first + lane]);
+                lost = first_of(lost, lanes, moved.around.held, |lane| shared.index[first + lane]);
                 for (lane, row) in rows.iter().enumerate().take(L::WIDTH) {
                     for place in places(lane).iter().skip(1) {
                         record(place).copy_from_nonoverlapping(*row, RECORD);

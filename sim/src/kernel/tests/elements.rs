@@ -1,7 +1,7 @@
 //! The kernel for any elements.
 
 use super::*;
-use crate::kernel::general::{SMALL, parts};
+use crate::kernel::general::{SMALL, layout::parts};
 
 /// Steps a body with the lanes of every set, which must agree bit for bit, and with the reference.
 fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, damping: f64, scheme: Scheme) {
