@@ -15,6 +15,7 @@ use crate::part::Part;
 use crate::state::{Memory, Nodes, Runaway, State};
 use crate::surroundings::Surroundings;
 use crate::system::System;
+use crate::work::Work;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::Arc;
@@ -55,121 +56,144 @@ impl ByKernel {
         let margin = parts.iter().fold(0.0, |most: f64, part| most.max(MARGIN * part.body.extent()));
         Self { rollback: Rollback::new(steppers, scheme), energies, constraints: None, margin }
     }
+
+    /// Takes steps until a target, at most as many as have the same grips and the same kind of loads, of a world of so many nodes.
+    fn stretch(&mut self, system: &System, limit: &SpeedLimit, nodes: usize, target: u64) -> Result<(), Runaway> {
+        let Self { rollback, constraints, margin, .. } = self;
+        let constraints = constraints.get_or_insert_default();
+        let Surroundings { gravity, mass_damping, grips, .. } = &system.surroundings;
+        let (work, impulses) = (system.work.as_ref(), system.impulses.as_ref());
+        let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
+        let begin = rollback.steps();
+        let taken = take_nodes(system, constraints, rollback);
+        let memory = taken.as_ref().unwrap_or(constraints);
+        // Grips take and release nodes between stretches, and no step is repeated with other grips.
+        let is_new = |step: u64| system.takes(step, memory) || system.releases(step) || loads_change(system, step);
+        if taken.is_some() || begin > 0 && is_new(begin) {
+            rollback.arrive();
+        }
+        // Moving obstacles are placed in advance, for this many steps at a time.
+        let is_still = obstacles.iter().all(|obstacle| obstacle.is_still());
+        let until = match is_still && grips.is_empty() && system.surroundings.loads.is_empty() {
+            true => target,
+            false => {
+                let last = target.min(begin + STRETCH);
+                (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
+            }
+        };
+        let timing = rollback.scheme().timing();
+        let met = Met::new(&obstacles, system, rollback.earliest()..until, *margin);
+        let unfeeling = system.unfeeling(system.interval(begin), memory);
+        let held = Held::new(system, begin, memory);
+        let meet = |step: u64, before: Nodes<'_>, after: &mut State, changed: &mut Vec<u32>| {
+            let (interval, State { position, velocity, .. }) = (system.interval(step), after);
+            system.meet(End { interval, before, position, velocity, timing, changed, impulses }, memory);
+        };
+        let alone = |step: u64, at: Nodes<'_>, most: u64| {
+            // Constraints may take nodes anywhere.
+            let stage = system.contact.as_ref().filter(|_| grips.is_empty())?;
+            stage.alone(at, system.interval(step), most)
+        };
+        let push = |step: u64, share: f64, at: Nodes<'_>, forces: &mut Forces| push(system, step, share, at, forces);
+        let is_steady = system.surroundings.are_steady(system.interval(begin));
+        let steady = if is_steady { steady_forces(system, nodes, rollback) } else { Forces::default() };
+        let around = Around {
+            gravity: *gravity,
+            mass_damping: *mass_damping,
+            forces: steady.columns(),
+            push: (!is_steady).then_some(&push as &Push<'_>),
+            work,
+            bounds: &met.bounds,
+            row: &|step| met.row(step),
+            resolve: &|step, node, position, velocity, acceleration| {
+                // Grips place the nodes that they hold anyway, and then feel all that moves them.
+                let placed = if unfeeling.get(node) == Some(&true) { 0..0 } else { met.row(step) };
+                for (obstacle, &number) in met.placed[placed].iter().zip(&numbers) {
+                    let before = [*position, *velocity];
+                    obstacle.rebound(position, velocity, acceleration);
+                    let (end, from) = (system.interval(step).end, Source::Obstacle(number));
+                    system.feel(end, from, node, before, [*position, *velocity]);
+                }
+            },
+            impulses,
+            floor: met.floor().filter(|_| impulses.is_none()),
+            apart: &system.apart(),
+            grips: (!grips.is_empty()).then_some(&held),
+            held: &[],
+            meeting: system.contact.as_ref().map(|stage| Meeting { meet: &meet, alone: &alone, nodes: &stage.nodes }),
+            speed_limit: &|step| limit.at(system.interval(step).end),
+        };
+        let outcome = rollback.advance(until, &around, &system.crew);
+        if let Some(taken) = taken.filter(|_| rollback.steps() > begin) {
+            *constraints = taken;
+        }
+        outcome
+    }
+}
+
+/// Steps for which moving obstacles are placed at a time.
+const STRETCH: u64 = 256;
+
+/// The memory of the constraints with the nodes that grips take in the next step; `None` if they take none.
+fn take_nodes(system: &System, constraints: &[f64], rollback: &mut Rollback) -> Option<Vec<f64>> {
+    let begin = rollback.steps();
+    system.takes(begin, constraints).then(|| {
+        let (end, mut memory) = (system.interval(begin).end, constraints.to_vec());
+        system.change_grips(&mut memory, |grip, memory| {
+            grip.reach(end, memory, |node| rollback.node(node as usize).0);
+        });
+        memory
+    })
+}
+
+/// Whether loads begin or end to change in a step.
+fn loads_change(system: &System, step: u64) -> bool {
+    let are_steady = |step: u64| system.surroundings.are_steady(system.interval(step));
+    are_steady(step) != are_steady(step - 1)
+}
+
+/// The nodes with loads.
+fn loaded(system: &System) -> impl Iterator<Item = usize> {
+    system.work.as_ref().map_or(&[][..], Work::nodes).iter().map(|&node| node as usize)
+}
+
+/// Computes the forces of loads after a share of a step, and adds up their work at its start.
+fn push(system: &System, step: u64, share: f64, at: Nodes<'_>, forces: &mut Forces) {
+    loaded(system).for_each(|node| forces.vectors[node] = DVec3::ZERO);
+    system.surroundings.push(system.interval(step).after(share), at.position, &mut forces.vectors);
+    forces.spread(loaded(system));
+    if let Some(work) = system.work.as_ref().filter(|_| share == 0.0) {
+        work.add(&system.surroundings, system.interval(step).begin, at, &forces.vectors);
+    }
+}
+
+/// The forces of loads on so many nodes where they are the same everywhere and stay so; empty without loads.
+fn steady_forces(system: &System, nodes: usize, rollback: &mut Rollback) -> Forces {
+    let Some(work) = &system.work else { return Forces::default() };
+    let (begin, mut forces) = (rollback.steps(), Forces::zero(nodes));
+    let mut now = State::new(vec![DVec3::ZERO; nodes], vec![DVec3::ZERO; nodes]);
+    let time = system.interval(begin).begin;
+    system.surroundings.push(time, &now.position, &mut forces.vectors);
+    forces.spread(loaded(system));
+    if system.adds_work(begin) {
+        loaded(system).for_each(|node| (now.position[node], now.velocity[node]) = rollback.node(node));
+        work.add(&system.surroundings, time, now.nodes(), &forces.vectors);
+    }
+    forces
 }
 
 impl Dynamics for ByKernel {
     fn advance(&mut self, system: &System, limit: &SpeedLimit, state: &mut State, count: u64) -> Result<(), Runaway> {
-        /// Steps for which moving obstacles are placed at a time.
-        const STRETCH: u64 = 256;
-        let Self { rollback, constraints, margin, .. } = self;
-        let constraints = constraints.get_or_insert_with(|| {
-            rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
-            state.memory.constraints.clone()
-        });
-        let Surroundings { gravity, mass_damping, grips, loads, .. } = &system.surroundings;
-        let work = system.work.as_ref();
-        let loaded = || work.map_or(&[][..], |work| work.nodes()).iter().map(|&node| node as usize);
-        let mut steady = Forces::default();
-        let (numbers, obstacles): (Vec<_>, Vec<_>) = system.met_by_nodes().into_iter().unzip();
-        let (obstacles, apart, impulses) = (&obstacles[..], &system.apart()[..], system.impulses.as_ref());
-        let is_still = obstacles.iter().all(|obstacle| obstacle.is_still());
-        let target = rollback.steps() + count;
-        while rollback.steps() < target {
-            let begin = rollback.steps();
-            let mut taken = None;
-            if system.takes(begin, constraints) {
-                let (end, memory) = (system.interval(begin).end, taken.insert(constraints.clone()));
-                system.change_grips(memory, |grip, memory| {
-                    grip.reach(end, memory, |node| rollback.node(node as usize).0);
-                });
+        let target = match self.constraints {
+            Some(_) => self.rollback.steps() + count,
+            None => {
+                self.rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
+                self.constraints = Some(state.memory.constraints.clone());
+                state.steps + count
             }
-            let memory = taken.as_ref().unwrap_or(constraints);
-            // Grips take and release nodes between stretches, and no step is repeated with other grips.
-            let are_steady = |step: u64| system.surroundings.are_steady(system.interval(step));
-            let is_new = |step: u64| {
-                let changes = system.takes(step, memory) || system.releases(step);
-                changes || are_steady(step) != are_steady(step - 1)
-            };
-            if taken.is_some() || begin > 0 && is_new(begin) {
-                rollback.arrive();
-            }
-            // Moving obstacles are placed in advance, for this many steps at a time.
-            let until = match is_still && grips.is_empty() && loads.is_empty() {
-                true => target,
-                false => {
-                    let last = target.min(begin + STRETCH);
-                    (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
-                }
-            };
-            let timing = rollback.scheme().timing();
-            let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
-            let unfeeling = system.unfeeling(system.interval(begin), memory);
-            let held = Held::new(system, begin, memory);
-            let meet = |step: u64, before: Nodes<'_>, after: &mut State, changed: &mut Vec<u32>| {
-                let (interval, State { position, velocity, .. }) = (system.interval(step), after);
-                system.meet(End { interval, before, position, velocity, timing, changed, impulses }, memory);
-            };
-            let alone = |step: u64, at: Nodes<'_>, most: u64| {
-                // Constraints may take nodes anywhere.
-                let stage = system.contact.as_ref().filter(|_| grips.is_empty())?;
-                stage.alone(at, system.interval(step), most)
-            };
-            let push = |step: u64, share: f64, at: Nodes<'_>, forces: &mut Forces| {
-                loaded().for_each(|node| forces.vectors[node] = DVec3::ZERO);
-                system.surroundings.push(system.interval(step).after(share), at.position, &mut forces.vectors);
-                forces.spread(loaded());
-                if let Some(work) = work.filter(|_| share == 0.0) {
-                    work.add(&system.surroundings, system.interval(step).begin, at, &forces.vectors);
-                }
-            };
-            let changes = !are_steady(begin);
-            if !changes && !loads.is_empty() {
-                let begin_time = system.interval(begin).begin;
-                // Forces that are the same everywhere do not read positions.
-                steady = Forces::zero(state.position.len());
-                system.surroundings.push(begin_time, &state.position, &mut steady.vectors);
-                steady.spread(loaded());
-                if let Some(work) = work.filter(|_| system.adds_work(begin)) {
-                    let mut now = State::new(state.position.clone(), state.velocity.clone());
-                    loaded().for_each(|node| (now.position[node], now.velocity[node]) = rollback.node(node));
-                    work.add(&system.surroundings, begin_time, now.nodes(), &steady.vectors);
-                }
-            }
-            let around = Around {
-                gravity: *gravity,
-                mass_damping: *mass_damping,
-                forces: steady.columns(),
-                push: changes.then_some(&push as &Push<'_>),
-                work,
-                bounds: &met.bounds,
-                row: &|step| met.row(step),
-                resolve: &|step, node, position, velocity, acceleration| {
-                    // Grips place the nodes that they hold anyway, and then feel all that moves them.
-                    let placed = if unfeeling.get(node) == Some(&true) { 0..0 } else { met.row(step) };
-                    for (obstacle, &number) in met.placed[placed].iter().zip(&numbers) {
-                        let before = [*position, *velocity];
-                        obstacle.rebound(position, velocity, acceleration);
-                        let (end, from) = (system.interval(step).end, Source::Obstacle(number));
-                        system.feel(end, from, node, before, [*position, *velocity]);
-                    }
-                },
-                impulses,
-                floor: met.floor().filter(|_| impulses.is_none()),
-                apart,
-                grips: (!grips.is_empty()).then_some(&held),
-                held: &[],
-                meeting: system.contact.as_ref().map(|stage| Meeting {
-                    meet: &meet,
-                    alone: &alone,
-                    nodes: &stage.nodes,
-                }),
-                speed_limit: &|step| limit.at(system.interval(step).end),
-            };
-            let outcome = rollback.advance(until, &around, &system.crew);
-            if let Some(taken) = taken.filter(|_| rollback.steps() > begin) {
-                *constraints = taken;
-            }
-            outcome?;
+        };
+        while self.rollback.steps() < target {
+            self.stretch(system, limit, state.position.len(), target)?;
         }
         Ok(())
     }

@@ -87,6 +87,41 @@ const INVERSE_MASS: usize = 6;
 const ACCELERATION: usize = 7;
 const ARRAYS: usize = 10;
 
+/// The springs between pairs of nodes, by the difference of their numbers and the lower one: those of the same difference together. Two springs
+/// between the same nodes are in two families.
+fn families(springs: &[[u32; 2]]) -> Vec<Vec<(usize, usize, usize)>> {
+    let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());
+    for ends in springs {
+        let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end as usize);
+        sorted.push((high - low, low, high));
+    }
+    sorted.sort_unstable_by_key(|&(offset, low, _)| (std::cmp::Reverse(offset), low));
+    let mut families: Vec<Vec<_>> = Vec::new();
+    for family in sorted.chunk_by(|a, b| a.0 == b.0) {
+        let mut doubles = 0;
+        let begin = families.len();
+        for (at, &spring) in family.iter().enumerate() {
+            doubles = if at > 0 && family[at - 1].1 == spring.1 { doubles + 1 } else { 0 };
+            if begin + doubles == families.len() {
+                families.push(Vec::new());
+            }
+            families[begin + doubles].push(spring);
+        }
+    }
+    families
+}
+
+/// So many chunks in slabs, which are long compared with the deferred chunks. Their number is a power of two.
+fn slabs(chunks: usize, deferred: usize) -> Vec<Slab> {
+    let count = 1 << (chunks / (4 * deferred)).clamp(1, 16).ilog2();
+    let slab = |at: usize| {
+        let [first, last] = [at, at + 1].map(|at| at * chunks / count);
+        let stride = staggered((last - first + deferred) * CHUNK);
+        Slab { first, last, pulls: Aligned::zeros(3 * stride), stride }
+    };
+    (0..count).map(slab).collect()
+}
+
 impl Stencil {
     /// The springs of a body with a stiffness (N/m) and a damping (N s/m), or `None` if they form no families, so that most
     /// lanes would be empty, or if elements are filled in part or differ in stiffness.
@@ -102,25 +137,7 @@ impl Stencil {
         let Body { rest, mass, fill: None, stiffness: None, .. } = body else { return None };
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
-        let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());
-        for ends in springs {
-            let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end as usize);
-            sorted.push((high - low, low, high));
-        }
-        sorted.sort_unstable_by_key(|&(offset, low, _)| (std::cmp::Reverse(offset), low));
-        // Two springs between the same nodes are in two families with the same offset.
-        let mut families: Vec<Vec<(usize, usize, usize)>> = Vec::new();
-        for family in sorted.chunk_by(|a, b| a.0 == b.0) {
-            let mut doubles = 0;
-            let begin = families.len();
-            for (at, &spring) in family.iter().enumerate() {
-                doubles = if at > 0 && family[at - 1].1 == spring.1 { doubles + 1 } else { 0 };
-                if begin + doubles == families.len() {
-                    families.push(Vec::new());
-                }
-                families[begin + doubles].push(spring);
-            }
-        }
+        let families = families(springs);
         let blocks: usize =
             families.iter().map(|family| family.chunk_by(|a, b| a.1 / BLOCK == b.1 / BLOCK).count()).sum();
         if blocks * BLOCK > SPARSE * springs.len() + BLOCK * families.len() {
@@ -151,15 +168,7 @@ impl Stencil {
         tensions.as_mut_slice()[..listed.len()].copy_from_slice(&listed);
         let behind = reach + BLOCK;
         let deferred = behind.div_ceil(CHUNK);
-        // Slabs are long compared with the deferred chunks, and their number is a power of two.
-        let slabs = 1 << (chunks / (4 * deferred)).clamp(1, 16).ilog2();
-        let slabs: Vec<Slab> = (0..slabs)
-            .map(|at| {
-                let [first, last] = [at, at + 1].map(|at| at * chunks / slabs);
-                let stride = staggered((last - first + deferred) * CHUNK);
-                Slab { first, last, pulls: Aligned::zeros(3 * stride), stride }
-            })
-            .collect();
+        let slabs = slabs(chunks, deferred);
         let stride = staggered(padded + behind);
         let mut state = Aligned::zeros(ARRAYS * stride);
         for (inverse, &mass) in state.as_mut_slice()[INVERSE_MASS * stride..].iter_mut().zip(mass) {

@@ -10,7 +10,7 @@ use crate::kernel::rotation::{Arctangent, Optimum, Solver};
 use crate::kernel::stepper::{Pass, Passes, Scheme};
 use crate::kernel::update::NodeUpdate;
 use crate::kernel::{Around, Lost, Rotation};
-use crate::lanes::{Lanes, MOST, Work};
+use crate::lanes::{Lanes, MOST, Set, Work};
 use crate::tally::Tally;
 use std::mem::MaybeUninit;
 use std::ops::Range;
@@ -26,71 +26,19 @@ pub(super) fn run(
     around: &Around<'_>,
     crew: &Crew,
 ) -> Option<Lost> {
-    let LatticeStepper {
-        set,
-        grid,
-        parameters,
-        parts,
-        nodes,
-        turns,
-        pattern,
-        slabs,
-        signals,
-        tally,
-        kept: _,
-        places: _,
-    } = lattice;
     if some.is_empty() {
         return None;
     }
-    let Parameters { stiffness, bending, volume, damping, damped, rotation, step } = *parameters;
-    let side = grid.sides.element_sum() / 3.0;
-    let ratio = (grid.sides / side).to_array();
-    let members = crew.threads().min(grid.cells[2]);
-    if signals.len() < members {
-        *slabs = Aligned::zeros(members * Slab::new(grid).end);
-        *signals = (0..members).map(|_| Signal::default()).collect();
+    let members = crew.threads().min(lattice.grid.cells[2]);
+    if lattice.signals.len() < members {
+        lattice.slabs = Aligned::zeros(members * Slab::new(&lattice.grid).end);
+        lattice.signals = (0..members).map(|_| Signal::default()).collect();
     }
-    for signal in &mut **signals {
+    for signal in &mut lattice.signals {
         *signal = Signal::default();
     }
     let stop = AtomicBool::new(false);
-    let sweep = Sweep {
-        nodes: nodes.pointer(),
-        turns: turns.pointer(),
-        live: pattern.live.pointer(),
-        valence: pattern.valence.pointer(),
-        slabs: slabs.pointer(),
-        slab: Slab::new(grid),
-        work: std::ptr::null_mut(),
-        grid: *grid,
-        stride: grid.stride(),
-        box_stride: grid.box_stride(),
-        ring: grid.ring(),
-        stiffness: bending * stiffness,
-        damping,
-        maps: Maps {
-            are_used: bending != 1.0 || volume != 0.0,
-            affine: 0.125 * (1.0 - bending) * stiffness,
-            per_volume: 1.0 / (64.0 * grid.sides.element_product()),
-            pressure: volume * stiffness * grid.sides.length_squared() / (192.0 * grid.sides.element_product()),
-        },
-        ratio,
-        is_cube: ratio == [1.0; 3],
-        // The columns of `A` at rest have length 2 side²; the factor side / 2 is left out.
-        scale: 1.0 / (4.0 * side),
-        half: 0.5 * side * stiffness,
-        step,
-        parts: *parts,
-        around,
-        passes,
-        some: [some.start, some.end],
-        member: 0,
-        members,
-        signals,
-        tally,
-        stop: &stop,
-    };
+    let sweep = Sweep::new(lattice, passes, [some.start, some.end], around, members, &stop);
     let lost = Mutex::new(None);
     let work = |member: usize| {
         if member >= members {
@@ -98,26 +46,10 @@ pub(super) fn run(
         }
         // Other threads wait for this one; the guard ends their wait if it panics.
         let _guard = StopOnPanic(&stop);
-        let mut found = None;
         // SAFETY: each thread has its own buffers.
         let slabs = unsafe { sweep.slabs().add(member * sweep.slab.end) };
         let sweep = Sweep { member, slabs, ..sweep };
-        macro_rules! run {
-            ($damped:ident) => {
-                match rotation {
-                    Rotation::Optimum => set.run(Solved::<_, $damped>(&sweep, Optimum, &mut found)),
-                    Rotation::Arctangent { passes } => {
-                        set.run(Solved::<_, $damped>(&sweep, Arctangent { passes }, &mut found));
-                    }
-                }
-            };
-        }
-        match damped {
-            NONE => run!(NONE),
-            RELATIVE => run!(RELATIVE),
-            _ => run!(DEFORMING),
-        }
-        if let Some(found) = found {
+        if let Some(found) = sweep.solve(lattice.set, &lattice.parameters) {
             *lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
         }
     };
@@ -199,6 +131,80 @@ struct Sweep<'a> {
 
 // SAFETY: threads write to their own planes, and read those of others only when `Signal` allows it.
 unsafe impl Sync for Sweep<'_> {}
+
+impl<'a> Sweep<'a> {
+    /// The first of so many threads, without buffers of its own.
+    fn new(
+        lattice: &'a LatticeStepper,
+        passes: Passes,
+        some: [u64; 2],
+        around: &'a Around<'a>,
+        members: usize,
+        stop: &'a AtomicBool,
+    ) -> Self {
+        let LatticeStepper { grid, parameters, parts, nodes, turns, pattern, slabs, signals, tally, .. } = lattice;
+        let &Parameters { stiffness, bending, volume, damping, step, .. } = parameters;
+        let side = grid.sides.element_sum() / 3.0;
+        let ratio = (grid.sides / side).to_array();
+        Self {
+            nodes: nodes.pointer(),
+            turns: turns.pointer(),
+            live: pattern.live.pointer(),
+            valence: pattern.valence.pointer(),
+            slabs: slabs.pointer(),
+            slab: Slab::new(grid),
+            work: std::ptr::null_mut(),
+            grid: *grid,
+            stride: grid.stride(),
+            box_stride: grid.box_stride(),
+            ring: grid.ring(),
+            stiffness: bending * stiffness,
+            damping,
+            maps: Maps {
+                are_used: bending != 1.0 || volume != 0.0,
+                affine: 0.125 * (1.0 - bending) * stiffness,
+                per_volume: 1.0 / (64.0 * grid.sides.element_product()),
+                pressure: volume * stiffness * grid.sides.length_squared() / (192.0 * grid.sides.element_product()),
+            },
+            ratio,
+            is_cube: ratio == [1.0; 3],
+            // The columns of `A` at rest have length 2 side²; the factor side / 2 is left out.
+            scale: 1.0 / (4.0 * side),
+            half: 0.5 * side * stiffness,
+            step,
+            parts: *parts,
+            around,
+            passes,
+            some,
+            member: 0,
+            members,
+            signals,
+            tally,
+            stop,
+        }
+    }
+
+    /// Executes the passes of this thread by the rotation and the damping of the parameters.
+    fn solve(&self, set: Set, parameters: &Parameters) -> Option<Lost> {
+        let mut found = None;
+        macro_rules! run {
+            ($damped:ident) => {
+                match parameters.rotation {
+                    Rotation::Optimum => set.run(Solved::<_, $damped>(self, Optimum, &mut found)),
+                    Rotation::Arctangent { passes } => {
+                        set.run(Solved::<_, $damped>(self, Arctangent { passes }, &mut found));
+                    }
+                }
+            };
+        }
+        match parameters.damped {
+            NONE => run!(NONE),
+            RELATIVE => run!(RELATIVE),
+            _ => run!(DEFORMING),
+        }
+        found
+    }
+}
 
 /// A sweep with a solver, and the velocity that is damped.
 struct Solved<'a, 'b, S, const DAMPING: u8>(&'a Sweep<'b>, S, &'a mut Option<Lost>);
