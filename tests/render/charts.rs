@@ -179,7 +179,7 @@ fn flags_are_those_that_panels_explain() {
 /// A count that goes up and down in every second moment.
 #[test]
 fn what_chatters_is_a_band() {
-    let (scene, [frame]) = with_chart(Diagnostic::TurnedOver, [0]);
+    let (mut scene, [frame]) = with_chart(Diagnostic::TurnedOver, [0]);
     let mut history = History::new(&scene, &[0, 1]);
     for (at, diagnostics) in history.series[1].diagnostics.iter_mut().enumerate() {
         diagnostics.turned_over = 5 + 4 * (at % 2);
@@ -191,7 +191,13 @@ fn what_chatters_is_a_band() {
     let widest = picture.marks.iter().filter(|mark| mark.rectangle[1] > 560.0 && mark.rectangle[3] > 5.0);
     let widest = widest.map(|mark| mark.rectangle[2]).fold(0.0, f32::max);
     assert!(widest > 600.0, "a band over most of the chart, not {widest} px");
-    assert!(picture.words.iter().any(|word| word.text == "filled where it"));
+    // Where there is room, it says what it is, and never half of that.
+    let lines = [900, 720, 500, 400, 360, 320].map(|height| {
+        scene.view.size[1] = height;
+        let picture = Composer::new(&scene, &history).compose(&frame);
+        picture.words.iter().filter(|word| ["filled where it", "oscillates fast"].contains(&&*word.text)).count()
+    });
+    assert!(lines[0] == 2 && lines.contains(&0) && !lines.contains(&1), "{lines:?}");
 }
 
 #[test]

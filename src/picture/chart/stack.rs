@@ -362,11 +362,13 @@ impl Stack {
             let few =
                 (shown.len() < one.series.len()).then(|| format!("{} of {} curves", shown.len(), one.series.len()));
             let mut notes: Vec<_> = one.notes.iter().chain(&few).map(|note| &**note).collect();
-            if chart.layers.iter().any(|layer| layer.has_band(chart, *place)) {
-                notes.extend(BAND);
-            }
             let free = place.bottom - place.top + 2.0 * room.beyond - scale.caption();
             let fitting = if Scale::legible(SMALL * unit) { (free / (SHORT * unit)).max(0.0) as usize } else { 0 };
+            // A sentence is written whole or not at all.
+            let has_band = chart.layers.iter().any(|layer| layer.has_band(chart, *place));
+            if has_band && notes.len() + BAND.len() <= fitting {
+                notes.extend(BAND);
+            }
             notes.truncate(fitting);
             one.write_name(ground, &notes, [left, 0.5 * (place.top + place.bottom)]);
         }
