@@ -69,14 +69,18 @@ impl Wire<'_> {
     /// Springs, the farthest first. With a scale and its colours, each has the colour of its strain, and more strained
     /// ones lie above the others.
     pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], ColourScale)>) -> Vec<Stroke> {
+        let palette = &self.draft.palette;
         let haze = self.haze();
         if let Some((ramp, scale)) = strain {
-            let strokes = springs.iter().map(|&ends| {
-                let strain = spring_strain(self.draft.body, &self.draft.position, ends);
+            let strokes = springs.iter().map(|&nodes| {
+                let strain = spring_strain(self.draft.body, &self.draft.position, nodes);
                 let share = strained_share(strain, scale.range);
                 let place = field::place(scale.of_spring(strain), scale.range);
-                let own = if place == NOWHERE { self.draft.palette.spring } else { field::colour(ramp, place) };
-                let (depth, stroke) = self.strained(ends, own, &|at| STRAINED_HAZE * haze(at) * (1.0 - share));
+                let own = if place == NOWHERE { palette.spring } else { field::colour(ramp, place) };
+                let ends = nodes.map(|node| self.draft.position[node as usize]);
+                let haze = STRAINED_HAZE * haze(ends[0].midpoint(ends[1])) * (1.0 - share);
+                let [own, casing] = [own, palette.casing].map(|colour| mixed(colour, palette.background, haze));
+                let (depth, stroke) = self.straight(ends, [own; 2], Some(casing), SPRING);
                 (depth, ((share * STRAIN_STEPS).round(), stroke))
             });
             let mut strokes: Vec<_> = farthest_first(strokes.collect()).collect();
@@ -85,22 +89,13 @@ impl Wire<'_> {
         }
         let mut strokes = Vec::with_capacity(springs.len());
         for &ends in springs {
-            self.stroke(ends, self.draft.palette.spring, SPRING, &haze, &mut strokes);
+            self.stroke(ends, palette.spring, SPRING, &haze, &mut strokes);
         }
         if self.surfaces() {
-            let second = Second::OnBody(self.draft.palette.spring_on_body);
+            let second = Second::OnBody(palette.spring_on_body);
             strokes.iter_mut().for_each(|(_, stroke)| stroke.second = second);
         }
         farthest_first(strokes).collect()
-    }
-
-    /// A spring in the colour of its strain.
-    fn strained(&self, ends: [u32; 2], own: Colour, haze: &dyn Fn(DVec3) -> f64) -> Placed {
-        let ends = ends.map(|node| self.draft.position[node as usize]);
-        let faded = |colour| mixed(colour, self.draft.palette.background, haze(ends[0].midpoint(ends[1])));
-        let (depth, plain) = self.straight(ends, [faded(own); 2], CASED * SPRING);
-        // A casing keeps lines of all colours visible, over surfaces, the ground and other lines.
-        (depth, Stroke { second: Second::Casing(faded(self.draft.palette.casing)), ..plain })
     }
 
     /// The edges of all elements, the farthest first, and the edges of turned-over ones again above them.
@@ -111,48 +106,33 @@ impl Wire<'_> {
         only_turned_over: bool,
     ) -> Vec<Stroke> {
         let haze = self.haze();
-        let mut strokes = Vec::new();
-        let is_whole = |element: usize| !is_broken(broken, element as u32);
+        let palette = &self.draft.palette;
+        let (mut strokes, mut alarm) = (Vec::new(), Vec::new());
+        let whole = || edges.of_elements.iter().enumerate().filter(|(at, _)| !is_broken(broken, *at as u32));
         if !only_turned_over {
             for &ends in edges.of_whole(broken).iter() {
-                self.stroke(ends, self.draft.palette.spring, EDGE, &haze, &mut strokes);
+                self.stroke(ends, palette.spring, EDGE, &haze, &mut strokes);
             }
-            let elements = edges.of_elements.iter().enumerate();
-            let elements = elements.filter(|&(element, edges)| edges.is_empty() && is_whole(element));
-            elements.for_each(|(element, _)| self.spokes(element, self.draft.palette.spring, EDGE, &mut strokes));
+            for (element, edges) in whole().filter(|(_, edges)| edges.is_empty()) {
+                self.element(element, edges, palette.spring, EDGE, &haze, &mut strokes);
+            }
         }
-        let mut strokes: Vec<_> = farthest_first(strokes).collect();
-        let mut alarm = Vec::new();
         let plain = Wire { shades: None, ..*self };
-        for (element, of_element) in edges.of_elements.iter().enumerate() {
-            if is_whole(element) && turned_over.get(element).copied().unwrap_or(false) {
-                for &ends in of_element {
-                    plain.stroke(ends, self.draft.palette.alarm, ALARM_EDGE, &haze, &mut alarm);
-                }
-                if of_element.is_empty() {
-                    plain.spokes(element, self.draft.palette.alarm, ALARM_EDGE, &mut alarm);
-                }
-            }
+        for (element, edges) in whole().filter(|(at, _)| turned_over.get(*at).is_some_and(|&over| over)) {
+            plain.element(element, edges, palette.alarm, ALARM_EDGE, &haze, &mut alarm);
         }
-        strokes.extend(farthest_first(alarm));
-        strokes
+        farthest_first(strokes).chain(farthest_first(alarm)).collect()
     }
 
     /// Elements without faces, coloured by a field like the surfaces beside them.
     pub(super) fn bare(&self, elements: &[usize], [turned_over, broken]: [&[bool]; 2]) -> Vec<Stroke> {
-        let (mut strokes, lines) = (Vec::new(), Wire { is_bare: true, ..*self });
+        let (mut strokes, lines, palette) = (Vec::new(), Wire { is_bare: true, ..*self }, &self.draft.palette);
         for &element in elements.iter().filter(|&&element| !is_broken(broken, element as u32)) {
-            let over = turned_over.get(element).copied().unwrap_or(false);
             let edges = self.draft.body.topology().edges_of(element);
-            if edges.is_empty() {
-                lines.spokes(element, self.draft.palette.edge, BARE, &mut strokes);
-            }
-            edges.iter().for_each(|&ends| lines.stroke(ends, self.draft.palette.edge, BARE, &|_| 0.0, &mut strokes));
-            if over {
+            lines.element(element, &edges, palette.edge, BARE, &|_| 0.0, &mut strokes);
+            if turned_over.get(element).is_some_and(|&over| over) {
                 let plain = Wire { shades: None, ..lines };
-                edges
-                    .iter()
-                    .for_each(|&ends| plain.stroke(ends, self.draft.palette.alarm, EDGE, &|_| 0.0, &mut strokes));
+                plain.element(element, &edges, palette.alarm, EDGE, &|_| 0.0, &mut strokes);
             }
         }
         strokes.into_iter().map(|(_, stroke)| stroke).collect()
@@ -179,20 +159,26 @@ impl Wire<'_> {
         farthest_first(nodes.collect()).map(bead).collect()
     }
 
-    /// Lines from the middle of an element without edges to its nodes.
-    fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
-        let nodes = &self.draft.body.elements()[element];
-        let middle = nodes.iter().map(|&node| self.draft.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
-        for &node in nodes {
-            let ends = [middle, self.draft.position[node as usize]];
-            strokes.push(match self.place_colour(node) {
-                None => self.straight(ends, [colour; 2], width),
-                Some(own) => {
-                    let second = Second::Casing(self.draft.palette.casing);
-                    let (depth, plain) = self.straight(ends, [own; 2], CASED * width);
-                    (depth, Stroke { second, ..plain })
-                }
-            });
+    /// The edges of an element or, if it has none, lines from its middle to its nodes.
+    fn element(
+        &self,
+        element: usize,
+        edges: &[[u32; 2]],
+        colour: Colour,
+        width: f64,
+        haze: &dyn Fn(DVec3) -> f64,
+        strokes: &mut Vec<Placed>,
+    ) {
+        edges.iter().for_each(|&ends| self.stroke(ends, colour, width, haze, strokes));
+        if edges.is_empty() {
+            let nodes = &self.draft.body.elements()[element];
+            let at = |node: u32| self.draft.position[node as usize];
+            let middle = nodes.iter().map(|&node| at(node)).sum::<DVec3>() / nodes.len() as f64;
+            strokes.extend(nodes.iter().map(|&node| {
+                let own = self.place_colour(node);
+                let casing = own.map(|_| self.draft.palette.casing);
+                self.straight([middle, at(node)], [own.unwrap_or(colour); 2], casing, width)
+            }));
         }
     }
 
@@ -209,7 +195,8 @@ impl Wire<'_> {
         let faded = |colour, point| mixed(colour, self.draft.palette.background, haze(point));
         let places = self.shades.map(|(ramp, places)| (ramp, [a, b].map(|node| places[node as usize])));
         let Some((ramp, places)) = places.filter(|(_, places)| !places.contains(&NOWHERE)) else {
-            return strokes.push(self.straight([from, to], [faded(colour, from), faded(colour, to)], width));
+            let colours = [from, to].map(|end| faded(colour, end));
+            return strokes.push(self.straight([from, to], colours, None, width));
         };
         let places = places.map(f64::from);
         let pieces = ((places[1] - places[0]).abs() / LONGEST_STEP).ceil().max(1.0);
@@ -218,19 +205,20 @@ impl Wire<'_> {
             let ends = shares.map(|share| from.lerp(to, share));
             let colours = shares.map(|share| field::colour(ramp, narrow(places[0] + (places[1] - places[0]) * share)));
             let casing = faded(self.draft.palette.casing, from.lerp(to, shares[0].midpoint(shares[1])));
-            let (depth, plain) = self.straight(ends, colours, CASED * width);
-            strokes.push((depth, Stroke { second: Second::Casing(casing), ..plain }));
+            strokes.push(self.straight(ends, colours, Some(casing), width));
         }
     }
 
-    fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Placed {
+    /// A straight line. A casing keeps lines of all colours visible, over surfaces, the ground and other lines.
+    fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], casing: Option<Colour>, width: f64) -> Placed {
+        let width = if casing.is_some() { CASED * width } else { width };
         let thinnest = if self.is_bare { THINNEST_BARE } else { THINNEST };
         let strength = (self.draft.element / f64::from(SMALL_ELEMENT)).clamp(0.0, 1.0);
         let behind = (BEHIND * strength * strength).round() as u8;
         let stroke = Stroke {
             ends: ends.map(|end| self.draft.relative(end)),
             colours,
-            second: Second::None,
+            second: casing.map_or(Second::None, Second::Casing),
             behind: if self.surfaces() { behind.max(1) } else { 0 },
             width: narrow(width * self.draft.scale.line() * strength.max(thinnest)),
         };
