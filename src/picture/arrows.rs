@@ -32,6 +32,9 @@ pub(super) const FADING: f64 = 0.35;
 /// More arrows than this would hide the body.
 const MOST_ARROWS: usize = 500;
 
+/// How an arrow is drawn: from one pixel to another, with a size, in a colour on a ground.
+pub(super) type DrawArrow = fn([DVec2; 2], f64, Colour, Colour) -> [Item; 2];
+
 /// The nodes with arrows: those on the surface. Of very many, a subset that looks even but follows no rows.
 pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
     let mut nodes = on_surface.to_vec();
@@ -91,8 +94,8 @@ pub(super) fn bent(pixels: &[DVec2], [unit, size]: [f64; 2], palette: &Palette) 
 pub(super) fn outlined(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 2] {
     let (corners, _) = outline(ends, HEAD * size);
     let [inside, rim] = OUTLINED.map(|strength| mixed(ground, colour, strength));
-    let rim = Item::stroke(Path::polygon(&corners.map(point)), Pen::solid(narrow(HAIR * size)), rim);
-    [bare(ends, size, inside), rim]
+    let path = Path::polygon(&corners.map(point));
+    [Item::fill(path.clone(), inside), Item::stroke(path, Pen::solid(narrow(HAIR * size)), rim)]
 }
 
 /// An arrow that differs from others and is as easily seen: its outline.

@@ -1,7 +1,7 @@
 //! The key of colours, lines and arrows: one for all panels, below them, so that it overlaps nothing.
 
 use super::Item;
-use super::arrows;
+use super::arrows::{self, DrawArrow};
 use super::caption::Writer;
 use super::chart::axis::Stretch;
 use super::chart::{Axis, Chart, PlotArea};
@@ -58,11 +58,7 @@ impl Sample<'_> {
 /// The look of a sample.
 pub(super) enum SampleKind {
     /// An arrow of a length (px), with its size relative to the reference picture.
-    Arrow([f64; 2]),
-    /// A hollow arrow of a length (px), with its size.
-    Hollow([f64; 2]),
-    /// The outlined arrow of another run, with its size.
-    Outlined(Colour, f64),
+    Arrow([f64; 2], Colour, DrawArrow),
     /// The arc of a torque, with the size of its arrow.
     Arc(f64),
     /// The dashed outline of a ghost.
@@ -137,19 +133,11 @@ impl Legend {
         let curve = |[from, to]: [f64; 2], dash: &[f64], colour: Colour| {
             Item::curve(&[[from, middle], [to, middle]], STRONG * unit, dash, colour)
         };
-        let ends = |length: f64| [left, left + length].map(|x| DVec2::new(x, middle));
         match sample.kind {
-            SampleKind::Arrow([own, size]) => {
-                writer.marks.push(arrows::arrow(ends(own), size, palette.text, palette.background));
+            SampleKind::Arrow([own, size], colour, draw) => {
+                let ends = [left, left + own].map(|x| DVec2::new(x, middle));
+                writer.marks.push(Item::part("arrow", draw(ends, size, colour, palette.background)));
                 length = own;
-            }
-            SampleKind::Hollow([own, size]) => {
-                let arrow = arrows::hollow(ends(own), size, palette.text, palette.background);
-                writer.marks.push(Item::part("arrow", arrow));
-                length = own;
-            }
-            SampleKind::Outlined(colour, size) => {
-                writer.marks.extend(arrows::outlined(ends(length), size, colour, palette.background));
             }
             SampleKind::Arc(size) => {
                 let radius = 0.5 * SHORT * unit;

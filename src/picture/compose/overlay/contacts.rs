@@ -3,7 +3,7 @@
 use super::KeyPlace;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::legend::{Sample, SampleKind};
+use crate::picture::legend::Sample;
 use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 use crate::scene::Scene;
@@ -20,8 +20,7 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
     let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
     let force = number::round_below(place.legend.arrow_length() / length);
     let words = number::value(Diagnostic::ContactForce, force, composer.extent);
-    let kind = SampleKind::Hollow([force * length, place.size(composer)]);
-    vec![Sample { names: vec![format!("contact force {words}").into(), words.into()], kind }]
+    vec![place.arrow(composer, vec![format!("contact force {words}"), words], force * length, arrows::hollow)]
 }
 
 /// Dots and arrows of contact. Each arrow begins at the middle of the places where two bodies, or a body and an obstacle, touch. It is hollow, as

@@ -13,7 +13,12 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
     let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
     let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
     let length = number::round_length(metres, composer.extent);
-    vec![place.arrow(composer, vec![format!("displacement {length}"), length], metres * pixels * scale)]
+    vec![place.arrow(
+        composer,
+        vec![format!("displacement {length}"), length],
+        metres * pixels * scale,
+        arrows::with_halo,
+    )]
 }
 
 /// Arrows of displacements, the farthest first, in the colour of text as in the key: paths and fields have others. Arrows

@@ -44,7 +44,7 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
         if has_small(composer.scene, &scales, shortest_load(place.size(composer)) / pixels) {
             names.insert(0, format!("{}, dots: smaller loads", names[0]));
         }
-        place.arrow(composer, names, value * metres * pixels)
+        place.arrow(composer, names, value * metres * pixels, arrows::with_halo)
     });
     let turning = (scales.torque > 0.0).then(|| {
         let size = quantity(scales.torque, "N m");

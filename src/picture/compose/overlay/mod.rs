@@ -13,11 +13,12 @@ use super::Composer;
 use super::draft::Draft;
 use crate::colour::Colour;
 use crate::look::{Ghost, View};
+use crate::picture::arrows::{self, DrawArrow};
 use crate::picture::layout::steps::{FREE, RING};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Legend, Sample, SampleKind};
-use crate::picture::{Framing, Item, arrows};
-use glam::{DVec2, DVec3};
+use crate::picture::{Framing, Item};
+use glam::DVec3;
 use std::borrow::Cow;
 
 /// Radius of a dot, in radii of a ring; its least one (px).
@@ -58,17 +59,12 @@ impl KeyPlace<'_> {
         arrows::size(self.pixels_a_metre(composer) * composer.scene.view.side, self.scale.unit)
     }
 
-    /// The sample of an arrow of a length (px), with its meaning in words, and in few.
-    fn arrow<'c>(&self, composer: &Composer<'_>, names: Vec<String>, length: f64) -> Sample<'c> {
-        Sample {
-            names: names.into_iter().map(Cow::from).collect(),
-            kind: SampleKind::Arrow([length, self.size(composer)]),
-        }
+    /// The sample of an arrow of a length (px), with wordings of its meaning.
+    fn arrow<'c>(&self, composer: &Composer<'_>, names: Vec<String>, length: f64, draw: DrawArrow) -> Sample<'c> {
+        let kind = SampleKind::Arrow([length, self.size(composer)], composer.palette.text, draw);
+        Sample { names: names.into_iter().map(Cow::from).collect(), kind }
     }
 }
-
-/// How an arrow is drawn: from one pixel to another, with a size, in a colour on a ground.
-type DrawArrow = fn([DVec2; 2], f64, Colour, Colour) -> [Item; 2];
 
 impl Draft<'_> {
     /// An arrow between two points (m), with its depth; `None` if it would be a speck, or is not longer than `shortest` (px). Where it leaves the

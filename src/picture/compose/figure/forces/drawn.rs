@@ -113,7 +113,7 @@ impl CellView<'_> {
             labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, NEAR * unit)));
             let colour = scene.runs[*run].line(palette).colour;
             let all = arrows.iter().filter(|ends| shown(ends));
-            above.extend(all.flat_map(|&ends| outlined(ends, line, colour, palette.background)));
+            above.extend(all.map(|&ends| Item::part("arrow", outlined(ends, line, colour, palette.background))));
         }
         if forces.vectors {
             self.vectors(writer, &mut labels, [&nodes, &ghost], &seen);

@@ -18,6 +18,7 @@ use super::NoRoom;
 use crate::look::{Labels, Palette, print};
 use crate::picture::Item;
 use crate::picture::Picture;
+use crate::picture::arrows::{outlined, with_halo};
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
 use crate::picture::layout::steps::{GAP, MARGIN, NAME_ROW, ROOM, ROW};
@@ -207,10 +208,14 @@ impl<'a> Diagram<'a> {
         let of_compared = self.forces.compare.map(|run| {
             let run = &self.runs[run];
             let names = vec![format!("forces of “{}”, for comparison", run.name).into()];
-            Sample { names, kind: SampleKind::Outlined(run.line(palette).colour, self.scale.line()) }
+            let lengths = [key.arrow_length(), self.scale.line()];
+            Sample { names, kind: SampleKind::Arrow(lengths, run.line(palette).colour, outlined) }
         });
         let samples = [
-            Sample { names: vec![arrow.into()], kind: SampleKind::Arrow([share * side, self.scale.line()]) },
+            Sample {
+                names: vec![arrow.into()],
+                kind: SampleKind::Arrow([share * side, self.scale.line()], palette.text, with_halo),
+            },
             Sample { names: vec!["rest shape, best fit".into()], kind: SampleKind::Ghost(palette.second_text) },
         ];
         samples.into_iter().chain(of_compared).collect()
