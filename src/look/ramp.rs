@@ -36,51 +36,41 @@ const DIVERGING: [[[f64; 3]; 3]; 2] = [
 /// The part of `magma` that is omitted at its black end, where neither shading nor edges could be seen.
 const BLACK_OF_MAGMA: f64 = 0.25;
 
-/// Lightness of the two ends of the scale of greys: the same as of the usual one, for the same reasons.
-const GREYS: [f64; 2] = [0.9550, 0.3850];
+/// The two ends of the scale of greys: as light as those of the usual one, for the same reasons.
+const GREYS: [[f64; 3]; 2] = [[0.9550, 0.0, 0.0], [0.3850, 0.0, 0.0]];
 
 /// The colours of a scale, from its lowest to its highest value at equal steps. On scales that depend on the theme,
 /// large values stand out from the ground: they are dark in the light theme and light in the dark one.
 pub(crate) fn ramp(map: ColourMap, theme: Theme) -> Vec<Colour> {
     let share = |at: usize| at as f64 / (SHADES - 1) as f64;
     let with_theme = |at: usize| if theme == Theme::Light { share(at) } else { 1.0 - share(at) };
+    let own = |points: &[[f64; 3]], share: &dyn Fn(usize) -> f64| {
+        (0..SHADES).map(|at| from_oklab(between(points, share(at)))).collect()
+    };
     let published =
         |gradient: Gradient| (0..SHADES).map(|at| gradient.eval_rational(at, SHADES).into_array()).collect();
     match map {
-        ColourMap::MintIndigo => (0..SHADES).map(|at| from_oklab(point(with_theme(at)))).collect(),
-        ColourMap::Greys => (0..SHADES).map(|at| from_oklab(grey(with_theme(at)))).collect(),
+        ColourMap::MintIndigo => own(&POINTS, &with_theme),
+        ColourMap::Greys => own(&GREYS, &with_theme),
         ColourMap::Viridis => published(colorous::VIRIDIS),
         ColourMap::Cividis => published(colorous::CIVIDIS),
         ColourMap::Magma => {
             let from_black = |at: usize| BLACK_OF_MAGMA + (1.0 - BLACK_OF_MAGMA) * share(at);
             (0..SHADES).map(|at| colorous::MAGMA.eval_continuous(from_black(at)).into_array()).collect()
         }
-        ColourMap::VioletGreen => (0..SHADES).map(|at| from_oklab(diverging(share(at), theme))).collect(),
+        ColourMap::VioletGreen => own(&DIVERGING[usize::from(theme == Theme::Dark)], &share),
         ColourMap::PurpleGreen => published(colorous::PURPLE_GREEN),
     }
 }
 
-/// A place on the usual scale.
-fn point(share: f64) -> Oklab {
-    let at = share * (POINTS.len() - 1) as f64;
-    let cell = (at as usize).min(POINTS.len() - 2);
+/// A place on a scale of points at equal steps.
+fn between(points: &[[f64; 3]], share: f64) -> Oklab {
+    let at = share * (points.len() - 1) as f64;
+    let cell = (at as usize).min(points.len() - 2);
     Oklab(std::array::from_fn(|axis| {
-        let [from, to] = [POINTS[cell][axis], POINTS[cell + 1][axis]];
+        let [from, to] = [points[cell][axis], points[cell + 1][axis]];
         from + (to - from) * (at - cell as f64)
     }))
-}
-
-/// A place on the diverging scale.
-fn diverging(share: f64, theme: Theme) -> Oklab {
-    let [low, middle, high] = DIVERGING[usize::from(theme == Theme::Dark)];
-    let (end, strength) = if share < 0.5 { (low, 1.0 - 2.0 * share) } else { (high, 2.0 * share - 1.0) };
-    Oklab(std::array::from_fn(|axis| middle[axis] + (end[axis] - middle[axis]) * strength))
-}
-
-/// A place on the scale of greys.
-fn grey(share: f64) -> Oklab {
-    let [from, to] = GREYS;
-    Oklab([from + (to - from) * share, 0.0, 0.0])
 }
 
 #[cfg(test)]
