@@ -47,15 +47,7 @@ impl Axis {
     /// An axis between two values, with texts at some of them.
     pub fn linear(range: [f64; 2], texts: Vec<(f64, String)>) -> Self {
         let (ticks, texts) = texts.into_iter().unzip();
-        Self(vec![Stretch {
-            range,
-            along: [0.0, 1.0],
-            is_logarithmic: false,
-            ticks,
-            texts,
-            unit: String::new(),
-            factor: 1.0,
-        }])
+        Self(vec![Stretch { range, ticks, texts, ..Stretch::default() }])
     }
 
     /// A logarithmic axis between two positive values, with numbers at powers of ten, at most `most` of them. A short
@@ -84,12 +76,10 @@ impl Axis {
         };
         Self(vec![Stretch {
             range: [low, high].map(libm::exp10),
-            along: [0.0, 1.0],
             is_logarithmic: true,
             texts: all.iter().map(text).collect(),
             ticks: all.iter().map(|&(power, digit)| times_ten(digit, f64::from(power))).collect(),
-            unit: String::new(),
-            factor: 1.0,
+            ..Stretch::default()
         }])
     }
 
@@ -102,6 +92,14 @@ impl Axis {
     /// The stretch of a value, the last one for values beyond all.
     pub(super) fn stretch(&self, value: f64) -> Option<&Stretch> {
         self.0.iter().find(|stretch| value <= stretch.range[1]).or(self.0.last())
+    }
+}
+
+impl Default for Stretch {
+    /// A whole axis of even numbers without a unit, from 0 to 1.
+    fn default() -> Self {
+        let (ticks, texts, unit) = Default::default();
+        Self { range: [0.0, 1.0], along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit, factor: 1.0 }
     }
 }
 
@@ -137,7 +135,7 @@ impl Stretch {
             };
             let texts = ticks.iter().map(f64::to_string).collect();
             let range = [low * factor, low * factor + (low * factor).abs().max(1.0)];
-            return Self { range, along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit, factor };
+            return Self { range, ticks, texts, unit, factor, ..Self::default() };
         }
         let division = divide(kind, [low, high], most.max(2));
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
@@ -150,12 +148,11 @@ impl Stretch {
         };
         Self {
             range: division.range.map(|end| end * factor),
-            along: [0.0, 1.0],
-            is_logarithmic: false,
             ticks: division.ticks.iter().map(|tick| tick * factor).collect(),
             texts: division.ticks.iter().copied().map(text).collect(),
             unit,
             factor,
+            ..Self::default()
         }
     }
 
