@@ -1,4 +1,4 @@
-//! Signs and words in charts: moments, values, divergences, and flags with letters or numbers.
+//! Signs and words in charts: divergences, names, and flags with letters or numbers.
 
 use super::layer::pixels;
 use super::names::{self, DOTS, Name, spread};
@@ -7,13 +7,11 @@ use crate::colour::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::Scale;
 use crate::picture::layout::steps::{CLOSE, FREE, HAIR, NEAR, RING, SMALL, STRONG, THIN, TICK};
-use crate::picture::narrow::narrow;
-use crate::picture::page::{self, Item, Path, Pen};
+use crate::picture::page::Item;
 use crate::picture::plane::pieces;
 use crate::picture::text::Weight;
 
-/// Opacities of the line of a moment, and of the lines of flags.
-const MOMENT: f64 = 0.75;
+/// The opacity of the lines of flags.
 const FLAG: f64 = 0.62;
 /// The largest share of the margin for crowded rings at each end.
 const BEYOND: f64 = 0.35;
@@ -21,20 +19,6 @@ const BEYOND: f64 = 0.35;
 /// A sign or words in a chart, in the values of its axes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Annotation {
-    /// A line upwards.
-    Moment {
-        /// Its place to the right.
-        at: f64,
-        /// Its colour.
-        colour: Colour,
-    },
-    /// A circle around a value; none around a value outside of the chart.
-    Ring {
-        /// The value.
-        at: [f64; 2],
-        /// Its colour.
-        colour: Colour,
-    },
     /// A cross at the end of a line that is cut off, with an arrowhead where it leaves the chart.
     Cross {
         /// The points of the line.
@@ -66,19 +50,6 @@ pub(in crate::picture) struct Flag {
 impl Annotation {
     pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: PlotArea) {
         match self {
-            &Self::Moment { at, colour } => {
-                let x = place.x(&chart.x, at);
-                let ends = [[x, place.borders()[1]], [x, place.bottom + TICK * place.unit]];
-                writer.curves.push(place.curve(&ends, THIN, &[], (colour, MOMENT)));
-            }
-            &Self::Ring { at, colour } => {
-                let [x, y] = [place.x(&chart.x, at[0]), place.y(&chart.y, at[1])];
-                if (place.top - 1.0..=place.bottom + 1.0).contains(&y) {
-                    let [radius, width] = [TICK, THIN].map(|length| narrow(length * place.line));
-                    let path = Path::circle(page::point([x, y].into()), radius);
-                    writer.curves.push(Item::stroke(path, Pen::solid(width), colour));
-                }
-            }
             Self::Cross { line, at, colour } => cross(writer, chart, place, (line, *at), *colour),
             Self::Names { names, beyond } => names::write(writer, chart, place, names, *beyond),
         }

@@ -1,7 +1,7 @@
 //! The charts below the panels of a frame: the time series of all runs over the whole scene, numbered flags for their
 //! events, and the present moment. Only that moment moves; the rest is composed once.
 
-use super::annotation::{Annotation, Flag};
+use super::annotation::Flag;
 use super::event::{self, Event};
 use super::series::Series;
 use super::stack::Stack;
@@ -9,9 +9,10 @@ use super::{Chart, PlotArea};
 use crate::look::Plot;
 use crate::picture::Colour;
 use crate::picture::caption::Writer;
-use crate::picture::layout::steps::MARGIN;
+use crate::picture::layout::steps::{MARGIN, THIN, TICK};
 use crate::picture::layout::{Layout, Room};
-use crate::picture::page::Item;
+use crate::picture::narrow::narrow;
+use crate::picture::page::{self, Item, Path, Pen};
 use crate::runner::history::History;
 use crate::runner::{Frame, RunFrame};
 use crate::scene::Scene;
@@ -20,6 +21,8 @@ use crate::sim::Status;
 /// The largest shares of the room for names of charts and for the names at the ends of curves.
 const NAME: f64 = 0.3;
 const NAMES: f64 = 0.22;
+/// The opacity of the line of a moment.
+const MOMENT: f64 = 0.75;
 
 /// The charts of a scene.
 #[derive(Debug)]
@@ -95,13 +98,20 @@ impl Timeline {
     pub(in crate::picture) fn draw(&self, writer: &mut Writer<'_>, frame: &Frame) {
         writer.marks.extend_from_slice(&self.still[0]);
         for (.., chart, place) in self.charts.iter().filter(|(plot, ..)| plot.is_over_time()) {
-            Annotation::Moment { at: frame.time, colour: writer.palette.text }.draw(writer, chart, *place);
+            let x = place.x(&chart.x, frame.time);
+            let ends = [[x, place.borders()[1]], [x, place.bottom + TICK * place.unit]];
+            writer.curves.push(place.curve(&ends, THIN, &[], (writer.palette.text, MOMENT)));
         }
         writer.curves.extend_from_slice(&self.still[1]);
         for (plot, series, chart, place) in &self.charts {
             for run in frame.runs.iter().filter(|run| run.snapshot.status == Status::Ok) {
-                let ring = now(plot, series, run).map(|(at, colour)| Annotation::Ring { at, colour });
-                ring.iter().for_each(|ring| ring.draw(writer, chart, *place));
+                let Some((at, colour)) = now(plot, series, run) else { continue };
+                let [x, y] = [place.x(&chart.x, at[0]), place.y(&chart.y, at[1])];
+                if (place.top - 1.0..=place.bottom + 1.0).contains(&y) {
+                    let [radius, width] = [TICK, THIN].map(|length| narrow(length * place.line));
+                    let path = Path::circle(page::point([x, y].into()), radius);
+                    writer.curves.push(Item::stroke(path, Pen::solid(width), colour));
+                }
             }
         }
     }
