@@ -28,7 +28,7 @@ pub(super) use words::{WordPlaces, WordsShown, clear_of_words, rooms};
 
 use crate::look::{View, print};
 use scale::{LINE, unit};
-use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, ROW, SHORT, TILE};
+use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, ROW, SHORT, TALL_ROW, TILE};
 use tree::{Node, Place, Solved};
 use words::written;
 
@@ -73,7 +73,7 @@ impl Part {
     pub(super) fn size(self, scale: Scale) -> f64 {
         match self {
             Self::Title => scale.heading(),
-            Self::Clock => scale.title(),
+            Self::Clock | Self::Name => scale.title(),
             Self::Note(_) | Self::Chart => scale.small(),
             _ => scale.caption(),
         }
@@ -83,7 +83,8 @@ impl Part {
     pub(super) fn height(self, scale: Scale) -> f64 {
         let row = match self {
             Self::Title => MARGIN * scale.name_unit(),
-            Self::Clock | Self::Numbers => NAME_ROW * scale.name_unit(),
+            Self::Clock | Self::Name | Self::Numbers => NAME_ROW * scale.name_unit(),
+            Self::Events => TALL_ROW * scale.type_unit(),
             Self::Label(_) | Self::Note(_) => SHORT * scale.type_unit(),
             Self::Sample(_) => return BESIDE * scale.type_unit(),
             _ => ROW * scale.type_unit(),

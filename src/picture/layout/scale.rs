@@ -1,6 +1,6 @@
 //! Sizes of type and lines, which follow the size of a picture.
 
-use super::steps::{self, BESIDE, GAP, MARGIN, NAME_ROW, ROW, SHORT, SMALL, TALL_ROW};
+use super::steps::{self, BESIDE, GAP, MARGIN, SHORT, SMALL};
 use crate::look::{View, print};
 
 /// Smaller type cannot be read in any picture and is left out (px).
@@ -76,14 +76,6 @@ impl Scale {
         const GROWN: f64 = 1.5;
         const LARGER: f64 = 1.25;
         self.type_unit() * (GROWN / self.type_factor).clamp(LARGER * steps::TEXT / steps::NAME, 1.0)
-    }
-
-    /// The heights of the rows of a name, a second line and events in a panel (px).
-    pub(super) fn rows(self) -> [f64; 3] {
-        let row = |height: f64, size: f64| height.max(LINE * size);
-        let name = row(NAME_ROW * self.name_unit(), self.title());
-        let [second, events] = [ROW, TALL_ROW].map(|step| row(step * self.type_unit(), self.caption()));
-        [name, second, events]
     }
 
     /// The heights of the rows of a count and of the words below it (px).

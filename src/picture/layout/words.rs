@@ -31,19 +31,19 @@ pub(in crate::picture) fn written(view: &View, height: f64, unit: f64) -> WordsS
     let (second, events) = (model || clock, view.charts.iter().any(Plot::is_over_time));
     let [has_heading, has_numbers] = [letters || name || second || events, count || number || scale_bar];
     let edge = |end: usize, has_words| Node::new(Part::Edge, if has_words { scale.edges[end] } else { ROW } * unit);
-    let row = |part, height: f64, rank: u8| Node::new(part, height).rank(rank);
-    let [of_name, of_second, of_events] = scale.rows();
+    let row = |part: Part, rank: u8| Node::new(part, part.height(scale)).rank(rank);
+    let numbers = || Node::new(Part::Numbers, scale.numbers().iter().sum()).rank(2);
     let nodes: Vec<_> = std::iter::once(edge(0, has_heading))
-        .chain(has_heading.then(|| row(Part::Name, of_name, 3)))
-        .chain(second.then(|| row(Part::Second, of_second, 1)))
-        .chain(events.then(|| row(Part::Events, of_events, 0)))
+        .chain(has_heading.then(|| row(Part::Name, 3)))
+        .chain(second.then(|| row(Part::Second, 1)))
+        .chain(events.then(|| row(Part::Events, 0)))
         .chain([Node::new(Part::Body, BODY * height).stretched()])
-        .chain(has_numbers.then(|| row(Part::Numbers, scale.numbers().iter().sum(), 2)))
+        .chain(has_numbers.then(numbers))
         .chain([edge(1, has_numbers)])
         .collect();
     let mut solved = tree::column(&nodes, [0.0, 0.0, 0.0, height]);
     // Rows that cannot be read stay empty, and rows below a name without room.
-    let sizes = [(Part::Name, scale.title()), (Part::Second, scale.caption()), (Part::Events, scale.caption())];
+    let sizes = [Part::Name, Part::Second, Part::Events].map(|part| (part, part.size(scale)));
     let sizes = sizes.into_iter().chain([(Part::Numbers, scale.title())]);
     let nameless = |part| solved.get(Part::Name).is_none() && part != Part::Numbers;
     let empty = sizes.filter(|&(part, size)| solved.get(part).is_some() && (nameless(part) || !Scale::legible(size)));
@@ -92,7 +92,8 @@ pub(in crate::picture) struct WordPlaces {
 
 impl WordPlaces {
     pub(in crate::picture) fn new(scale: Scale, panel: Rectangle) -> Self {
-        let ([name, second, _], [count, below]) = (scale.rows(), scale.numbers());
+        let [name, second] = [Part::Name, Part::Second].map(|part| part.height(scale));
+        let [count, below] = scale.numbers();
         let [left, start, width, height] = panel.map(f64::from);
         let [top, bottom] = scale.edges.map(|edge| edge * scale.unit);
         let bottom = height - bottom;
