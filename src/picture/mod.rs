@@ -308,24 +308,23 @@ pub(crate) struct Line {
 
 /// The kind of a line, which determines its look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
 pub(crate) enum LineKind {
     /// An edge of an element that is not turned over.
-    Edge = 0,
+    Edge,
     /// An edge of a turned-over element.
-    AlarmEdge = 1,
+    AlarmEdge,
     /// A place where the surface of the elements that are not turned over turns away from the viewer.
-    Contour = 2,
+    Contour,
     /// A place where the surface of the turned-over elements turns away from the viewer.
-    AlarmContour = 3,
+    AlarmContour,
     /// An edge of an element without faces.
-    Bar = 4,
+    Bar,
     /// A place where a carried surface turns away from the viewer. It continues the line before it that ends where it begins.
-    FineContour = 5,
+    FineContour,
     /// An edge of a solid obstacle.
-    ObstacleEdge = 8,
+    ObstacleEdge,
     /// A place where the surface of a solid obstacle turns away from the viewer or ends at the floor.
-    ObstacleContour = 9,
+    ObstacleContour,
 }
 
 impl LineKind {

@@ -8,23 +8,13 @@ use sha2::{Digest, Sha256};
 use std::sync::Arc;
 use ttf_parser::{Face as Parsed, GlyphId};
 
-/// The two weights in use.
+/// The two weights in use, in the order of the built-in fonts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Weight {
     /// For explanations.
     Regular,
     /// For names and counts.
     SemiBold,
-}
-
-impl Weight {
-    /// The number of its built-in font.
-    fn built_in(self) -> u8 {
-        match self {
-            Self::Regular => 0,
-            Self::SemiBold => 1,
-        }
-    }
 }
 
 /// One glyph of a line of text.
@@ -161,7 +151,7 @@ impl Fonts {
 
     /// The fonts in which a text of a weight is looked up, in order.
     fn order(&self, weight: Weight) -> impl Iterator<Item = u8> {
-        let built_in = weight.built_in();
+        let built_in = weight as u8;
         // The scene's own are stored after the built-in ones; a single one serves both weights.
         let own = match self.faces.len() {
             2 => None,
