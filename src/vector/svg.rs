@@ -167,13 +167,8 @@ impl Svg<'_> {
 
 /// A length with up to two decimals.
 fn number(length: f32) -> String {
-    let hundredths = (f64::from(length) * 100.0).round() as i64;
-    let (sign, size) = (if hundredths < 0 { "-" } else { "" }, hundredths.unsigned_abs());
-    match (size / 100, size % 100) {
-        (whole, 0) => format!("{sign}{whole}"),
-        (whole, part) if part % 10 == 0 => format!("{sign}{whole}.{}", part / 10),
-        (whole, part) => format!("{sign}{whole}.{part:02}"),
-    }
+    // A sum with zero is no negative zero.
+    ((f64::from(length) * 100.0).round() / 100.0 + 0.0).to_string()
 }
 
 /// A path as the attribute `d`.
