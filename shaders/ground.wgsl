@@ -124,15 +124,8 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
     let words = smoothstep(0.55 * ground.fade_at_words, ground.fade_at_words, vec2(pixel.y, size.y - pixel.y));
     let fade = round * side * words.x * words.y;
-    let cells = (at + vec2(ground.first.w, ground.second.w)) / ground.grid.w;
-    let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
-    let width = max(across, vec2(1e-6));
-    var colour = ground.floor.rgb;
-    let thickness = max(panel.line_scale, 1.0);
-    let off = abs(fract(cells - 0.5) - 0.5) / width;
-    let line = clamp(0.5 * thickness + 0.5 - off, vec2(0.0), vec2(1.0))
-        * (panel.line_scale / thickness) * (1.0 - smoothstep(vec2(0.12), vec2(0.4), width));
-    colour = mix(colour, ground.grid.rgb, GRID_ALPHA * max(line.x, line.y));
+    let line = grid_lines((at + vec2(ground.first.w, ground.second.w)) / ground.grid.w);
+    var colour = mix(ground.floor.rgb, ground.grid.rgb, GRID_ALPHA * max(line.x, line.y));
     colour = mix(ground.shadow.rgb, colour, left);
     let faded = mix(ground.background.rgb, colour, fade);
     // Without dithering, wide shadows show the borders of their 256 steps.

@@ -51,17 +51,10 @@ fn pane_corner(
 
 // The colour of a wall with its grid, and its opacity.
 fn wall(corner: PaneCorner) -> vec4<f32> {
-    let across = vec2(
-        length(vec2(dpdx(corner.grid.x), dpdy(corner.grid.x))),
-        length(vec2(dpdx(corner.grid.y), dpdy(corner.grid.y))),
-    );
     let rise = length(vec2(dpdx(corner.above), dpdy(corner.above)));
     let alpha = corner.colour.a;
-    let width = max(across, vec2(1e-6));
     let thickness = max(panel.line_scale, 1.0);
-    let off = abs(fract(corner.grid - 0.5) - 0.5) / width;
-    let cells = clamp(0.5 * thickness + 0.5 - off, vec2(0.0), vec2(1.0))
-        * (panel.line_scale / thickness) * (1.0 - smoothstep(vec2(0.12), vec2(0.4), width));
+    let cells = grid_lines(corner.grid);
     // A line over a faint wall is nearly as strong as one over a strong wall.
     let line = GRID_ALPHA * max(cells.x, cells.y) * (0.35 + 0.65 * alpha);
     let near_floor = 1.0 - smoothstep(0.0, CREASE_HEIGHT * panel.soft, corner.above);

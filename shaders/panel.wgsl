@@ -57,5 +57,15 @@ struct Panel {
 // values from the corners, as constant varyings: a software driver reads a uniform buffer anew for each lane.
 var<private> panel: Panel;
 
+// The part of a pixel that lines of a grid at whole numbers cover, in each direction.
+fn grid_lines(cells: vec2<f32>) -> vec2<f32> {
+    let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
+    let width = max(across, vec2(1e-6));
+    let thickness = max(panel.line_scale, 1.0);
+    let off = abs(fract(cells - 0.5) - 0.5) / width;
+    return clamp(0.5 * thickness + 0.5 - off, vec2(0.0), vec2(1.0))
+        * (panel.line_scale / thickness) * (1.0 - smoothstep(vec2(0.12), vec2(0.4), width));
+}
+
 // Powers of a colour's brightness, weighted like the eye.
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
