@@ -27,12 +27,12 @@ impl Draft<'_> {
         let mut lines = SurfaceLines::default();
         let [sound, turned_over] = self.surfaces(&mut lines);
         let SurfaceLines { drawn: mut lines, borders } = lines;
-        let of_body = lines.len();
         let staging = Staging::new(self);
-        let (mut obstacles, staged) = staging.draw(&mut lines);
+        let (mut obstacles, staged) = staging.draw();
         let corners = |solid: &Solid| solid.mesh.vertices.iter().map(|vertex| self.place(vertex.position)).collect();
         obstacles.fade = self.fading(&obstacles.solids.iter().map(corners).collect::<Vec<_>>());
-        let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
+        let borders = borders.into_iter().map(|border| border.line).chain(staged.lines.iter().copied()).collect();
+        lines.extend(&staged.lines);
         let panel = Panel {
             viewport: self.viewport,
             region: self.region(&staged.outermost),

@@ -13,11 +13,15 @@ mod space;
 pub(super) use half_space::{HalfSpace, half_space};
 pub(super) use space::Staging;
 
+use crate::picture::{Line, Solid};
 use glam::DVec3;
 
-/// Points and triangles of solid obstacles for other parts of the picture.
+/// Solid obstacles, with points and triangles of them for other parts of the picture.
 #[derive(Debug, Default)]
 pub(super) struct Staged {
+    solids: Vec<Solid>,
+    /// Their edges and contours.
+    pub(super) lines: Vec<Line>,
     /// Points around them (m), for the part of the panel that they may cover.
     pub(super) outermost: Vec<DVec3>,
     /// Shadow casters: corners (m) and triangles.

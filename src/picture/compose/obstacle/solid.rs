@@ -6,7 +6,7 @@ use super::shapes::{FACES, Lathe, edges, lathe};
 use super::space::Staging;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::plane::around;
-use crate::picture::{Line, LineKind, Mesh, Solid, Vertex};
+use crate::picture::{LineKind, Mesh, Solid, Vertex};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -22,16 +22,8 @@ const MOST_CELLS: f64 = 64.0;
 const LARGE_BALL: f64 = 3.0;
 
 impl Staging<'_> {
-    /// Draws a round obstacle of a radius around a middle (m), whose shape `lathe` makes with any number of segments.
-    pub(super) fn round(
-        &self,
-        shape: impl Fn(usize) -> Lathe,
-        radius: f64,
-        middle: DVec3,
-        solids: &mut Vec<Solid>,
-        lines: &mut Vec<Line>,
-        staged: &mut Staged,
-    ) {
+    /// Draws a round obstacle of a radius around a middle (m), whose shape has any number of segments.
+    pub(super) fn round(&self, shape: impl Fn(usize) -> Lathe, radius: f64, middle: DVec3, staged: &mut Staged) {
         let distance = (middle - self.draft.lens.eye).dot(self.draft.lens.forward) - radius;
         let pixels = self.draft.lens.focal * radius / distance.max(self.draft.lens.near);
         let needed = (PI / (2.0 * FLATNESS / pixels.max(1e-3)).sqrt()).ceil();
@@ -43,9 +35,9 @@ impl Staging<'_> {
             Some(near) => self.turned(&lathe.refined(CELL * self.soft()), |at, out| near.to(at, out)),
             None => self.turned(&lathe, |_, _| 0.0),
         };
-        self.outline(&lathe, lines);
+        self.outline(&lathe, staged);
         staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
-        solids.push(Solid { mesh, colour: self.palette().obstacle });
+        staged.solids.push(Solid { mesh, colour: self.palette().obstacle });
         let coarse = shape(SHADOW_SEGMENTS);
         staged.add(&coarse.points(), &coarse.triangles());
     }
@@ -68,14 +60,7 @@ impl Staging<'_> {
     }
 
     /// Draws a box.
-    pub(super) fn block(
-        &self,
-        corners: &[DVec3; 8],
-        axes: [DVec3; 3],
-        solids: &mut Vec<Solid>,
-        lines: &mut Vec<Line>,
-        staged: &mut Staged,
-    ) {
+    pub(super) fn block(&self, corners: &[DVec3; 8], axes: [DVec3; 3], staged: &mut Staged) {
         let mut mesh = Mesh::default();
         let near = self.near(corners.iter().copied());
         let mut seen = [false; 6];
@@ -103,15 +88,15 @@ impl Staging<'_> {
             }
             seen[face] = self.draft.lens.sees(polygon[0], normal);
             if seen[face] {
-                self.ground_line(&polygon, lines);
+                self.ground_line(&polygon, staged);
             }
         }
         for ([a, b], [one, other]) in edges() {
             let line = [corners[a], corners[b]];
             match (seen[one], seen[other]) {
-                (true, true) => self.line(line, LineKind::ObstacleEdge, lines),
+                (true, true) => self.line(line, LineKind::ObstacleEdge, staged),
                 (false, false) => {}
-                _ => self.line(line, LineKind::ObstacleContour, lines),
+                _ => self.line(line, LineKind::ObstacleContour, staged),
             }
         }
         staged.outermost.extend(corners);
@@ -121,7 +106,7 @@ impl Staging<'_> {
             .map(|three| three.map(|at| at as u32))
             .collect();
         staged.add(corners, &triangles);
-        solids.push(Solid { mesh, colour: self.palette().obstacle });
+        staged.solids.push(Solid { mesh, colour: self.palette().obstacle });
     }
 
     /// The mesh of a round obstacle with the ambient light that the body takes at points with normals.
@@ -136,7 +121,7 @@ impl Staging<'_> {
     }
 
     /// The lines where a round surface turns away from the viewer, and where it meets the ground.
-    fn outline(&self, lathe: &Lathe, lines: &mut Vec<Line>) {
+    fn outline(&self, lathe: &Lathe, staged: &mut Staged) {
         let count = lathe.rings.first().map_or(0, Vec::len);
         let at = |ring: usize, segment: usize| lathe.rings[ring][segment % count].0;
         let seen: Vec<Vec<bool>> = (1..lathe.rings.len())
@@ -153,30 +138,30 @@ impl Staging<'_> {
             for segment in 0..count {
                 if seen[ring][segment] != seen[ring][(segment + 1) % count] {
                     let two = [at(ring, segment + 1), at(ring + 1, segment + 1)];
-                    self.line(two, LineKind::ObstacleContour, lines);
+                    self.line(two, LineKind::ObstacleContour, staged);
                 }
                 if ring > 0 && seen[ring][segment] != seen[ring - 1][segment] {
                     let two = [at(ring, segment), at(ring, segment + 1)];
-                    self.line(two, LineKind::ObstacleContour, lines);
+                    self.line(two, LineKind::ObstacleContour, staged);
                 }
             }
         }
         for ring in 1..lathe.rings.len() {
             for segment in (0..count).filter(|&segment| seen[ring - 1][segment]) {
                 let quad = [at(ring - 1, segment), at(ring - 1, segment + 1), at(ring, segment + 1), at(ring, segment)];
-                self.ground_line(&quad, lines);
+                self.ground_line(&quad, staged);
             }
         }
     }
 
     /// Adds a line, cut off where it goes below the ground.
-    pub(super) fn line(&self, ends: [DVec3; 2], kind: LineKind, lines: &mut Vec<Line>) {
+    fn line(&self, ends: [DVec3; 2], kind: LineKind, staged: &mut Staged) {
         let left = clipped_line(ends, self.ground.as_slice());
-        lines.extend(left.map(|ends| self.draft.line(ends, kind, 1.0)));
+        staged.lines.extend(left.map(|ends| self.draft.line(ends, kind, 1.0)));
     }
 
     /// The line in which a polygon meets the ground.
-    fn ground_line(&self, polygon: &[DVec3], lines: &mut Vec<Line>) {
+    fn ground_line(&self, polygon: &[DVec3], staged: &mut Staged) {
         let Some((normal, height)) = self.ground else { return };
         let above = |point: DVec3| normal.dot(point) - height;
         let through: Vec<_> = around(polygon)
@@ -186,7 +171,7 @@ impl Staging<'_> {
             })
             .collect();
         if let [from, to] = through[..] {
-            lines.push(self.draft.line([from, to], LineKind::ObstacleContour, 1.0));
+            staged.lines.push(self.draft.line([from, to], LineKind::ObstacleContour, 1.0));
         }
     }
 }

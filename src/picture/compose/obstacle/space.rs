@@ -4,10 +4,10 @@ use super::Staged;
 use super::half_space::HalfSpace;
 use super::shapes::{corners, rod};
 use crate::look::Palette;
+use crate::picture::Obstacles;
 use crate::picture::compose::draft::Draft;
 use crate::picture::compose::skin::Skin;
 use crate::picture::shell::{boundaries, triangles};
-use crate::picture::{Line, Obstacles};
 use crate::sim::{Shape, geometry};
 use glam::DVec3;
 
@@ -57,11 +57,11 @@ impl<'a> Staging<'a> {
     }
 
     /// All obstacles but the ground.
-    pub(in crate::picture) fn draw(&self, lines: &mut Vec<Line>) -> (Obstacles, Staged) {
+    pub(in crate::picture) fn draw(&self) -> (Obstacles, Staged) {
         if self.draft.lens.orthographic {
             return self.flat();
         }
-        let (mut solids, mut staged, mut slabs) = (Vec::new(), Staged::default(), Vec::new());
+        let (mut staged, mut slabs) = (Staged::default(), Vec::new());
         let floors: Vec<_> = self.draft.scene.obstacles.iter().map(|obstacle| obstacle.floor(self.time())).collect();
         for (at, obstacle) in self.draft.scene.obstacles.iter().enumerate() {
             let pose = obstacle.pose(self.time());
@@ -82,23 +82,24 @@ impl<'a> Staging<'a> {
                 Shape::Sphere { centre, radius } => {
                     let centre = pose.apply(centre, centre);
                     let shape = |segments| self.ball(centre, radius, segments);
-                    self.round(shape, radius, centre, &mut solids, lines, &mut staged);
+                    self.round(shape, radius, centre, &mut staged);
                 }
                 Shape::Capsule { from, to, radius } => {
                     let ends = [from, to].map(|end| pose.apply(obstacle.pivot, end));
                     let shape = |segments| rod(ends, radius, segments);
                     let middle = ends[0].midpoint(ends[1]);
-                    self.round(shape, radius, middle, &mut solids, lines, &mut staged);
+                    self.round(shape, radius, middle, &mut staged);
                 }
                 Shape::Box { centre, half, rotation } => {
                     let axes = DVec3::AXES.map(|axis| pose.rotation * (rotation * axis));
                     let corners = corners(pose.apply(centre, centre), axes, half);
-                    self.block(&corners, axes, &mut solids, lines, &mut staged);
+                    self.block(&corners, axes, &mut staged);
                 }
             }
         }
         let edges = slabs.iter().flat_map(|slab| slab.edges.iter().copied()).collect();
         let panes = self.in_order(slabs);
+        let solids = std::mem::take(&mut staged.solids);
         (Obstacles { solids, panes, edges, occluders: self.occluders(), fade: None }, staged)
     }
 }
