@@ -52,7 +52,7 @@ impl Draft<'_> {
         if self.flat {
             let flat = Flat { panel: &panel, palette: &self.palette, ramp: &self.composer.ramp };
             under.extend(flat.obstacles());
-            self.floors(under);
+            under.extend(self.floors());
             under.push(flat.body());
             self.signs(above);
             above.extend(flat.nodes());

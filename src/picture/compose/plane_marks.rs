@@ -51,21 +51,19 @@ pub(super) fn have_slopes(scene: &Scene) -> bool {
 
 impl Draft<'_> {
     /// All floors, below the body.
-    pub(super) fn floors(&self, marks: &mut Vec<Item>) {
-        for obstacle in &self.scene.obstacles {
-            if let Some(floor) = half_space(obstacle, self.snapshot.time) {
-                self.floor_in_plane(floor, obstacle.motion == Motion::Still, marks);
-            }
-        }
+    pub(super) fn floors(&self) -> impl Iterator<Item = Item> {
+        self.scene.obstacles.iter().filter_map(|obstacle| {
+            self.floor_in_plane(half_space(obstacle, self.snapshot.time)?, obstacle.motion == Motion::Still)
+        })
     }
 
     /// A floor at any angle, also a wall or a ceiling: a line between the words or, of a slope and a wall, to the borders of the panel, soft on its
     /// solid side.
-    fn floor_in_plane(&self, (normal, height): HalfSpace, is_still: bool, marks: &mut Vec<Item>) {
+    fn floor_in_plane(&self, (normal, height): HalfSpace, is_still: bool) -> Option<Item> {
         let unit = self.scale.unit;
         // The point of the floor nearest to the middle of the picture.
         let middle = DVec3::new(self.lens.eye.x, self.lens.eye.y, 0.0);
-        let Some(mut start) = self.pixel(middle + (height - normal.dot(middle)) * normal) else { return };
+        let mut start = self.pixel(middle + (height - normal.dot(middle)) * normal)?;
         if normal.y > LEVEL {
             // On whole pixels a line is sharp; a moving one must move evenly.
             start.y = if is_still && !self.framing.moves { start.y.round() } else { sharpened(start.y) };
@@ -82,7 +80,7 @@ impl Draft<'_> {
             let more = MARGIN * unit;
             clear = [left - more, top - more, right + more, bottom + more];
         }
-        let Some([from, to]) = clipped(start, along, clear, WHOLE) else { return };
+        let [from, to] = clipped(start, along, clear, WHOLE)?;
         let (inward, depth) = (along.perp(), MARGIN * unit);
         let mut drawn = Vec::new();
         let sides = |[from, to]: [f64; 2], depth: f64| [start + from * along, (to - from) * along, depth * inward];
@@ -105,7 +103,7 @@ impl Draft<'_> {
             drawn.push(line(sides([from, to], thickness), self.palette.axis));
         }
         // The floor does not extend into the neighbouring panel.
-        marks.extend((!drawn.is_empty()).then(|| Item::inside(self.viewport, drawn)));
+        (!drawn.is_empty()).then(|| Item::inside(self.viewport, drawn))
     }
 
     /// Ring arrows for the orientation of elements, above the body.
@@ -126,18 +124,16 @@ impl Draft<'_> {
             let set = if over { &mut turned_over } else { &mut sound };
             set.push((roomiest(&corners), corners));
         }
-        for &(place, _) in &sound {
-            self.sound_arrow(place, &turned_over, marks);
-        }
+        marks.extend(sound.iter().filter_map(|&(place, _)| self.sound_arrow(place, &turned_over)));
         let disc = GAP * self.scale.line();
         let (covered, roomy): (Vec<_>, Vec<_>) =
             turned_over.iter().map(|(place, _)| *place).partition(|place| place.1 < disc);
         self.callouts(covered, marks);
-        roomy.into_iter().for_each(|(middle, _)| self.alarm_arrow(middle, 1.0, marks));
+        marks.extend(roomy.into_iter().filter_map(|(middle, _)| self.alarm_arrow(middle, 1.0)));
     }
 
     /// The arrow of an element that is not turned over, unless a turned-over one covers it.
-    fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Circle, Vec<DVec2>)], marks: &mut Vec<Item>) {
+    fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Circle, Vec<DVec2>)]) -> Option<Item> {
         let unit = self.scale.line();
         // The distance to a turned-over element, or to the disc of its arrow.
         let beside = |((disc, _), polygon): &(Circle, Vec<DVec2>)| {
@@ -150,7 +146,7 @@ impl Draft<'_> {
         let radius = size * BESIDE * unit;
         let path = ring_arrow(point(middle), narrow(radius), THICKNESS[0], 1.0);
         let sign = Item::part("ring arrow", [Item::fill(path, self.palette.sign())]);
-        marks.extend(sign.faded(grown.min(free)).filter(|_| self.holds(middle, radius)));
+        sign.faded(grown.min(free)).filter(|_| self.holds(middle, radius))
     }
 
     /// Signs that would cover their elements stand left or right of the body, with leaders to the elements, if they have
@@ -178,19 +174,19 @@ impl Draft<'_> {
                 let dot = Item::rimmed(middle, FREE * unit, colour, self.palette.background);
                 if self.holds(sign, disc) {
                     marks.extend([leader, dot].into_iter().filter_map(|mark| mark.faded(grown)));
-                    self.alarm_arrow(sign, grown, marks);
+                    marks.extend(self.alarm_arrow(sign, grown));
                 }
             }
         }
     }
 
     /// The arrow of a turned-over element on a disc, with an opacity.
-    fn alarm_arrow(&self, middle: DVec2, opacity: f64, marks: &mut Vec<Item>) {
+    fn alarm_arrow(&self, middle: DVec2, opacity: f64) -> Option<Item> {
         let [ring, disc] = [BESIDE, GAP].map(|radius| radius * self.scale.line());
         let path = ring_arrow(point(middle), narrow(ring), THICKNESS[1], -1.0);
         let ground = Item::disc(middle.to_array(), disc, [255; 3]);
         let sign = Item::part("alarm arrow", [ground, Item::fill(path, self.palette.alarm_on_white)]);
-        marks.extend(sign.faded(opacity).filter(|_| self.holds(middle, disc)));
+        sign.faded(opacity).filter(|_| self.holds(middle, disc))
     }
 
     /// Whether a circle lies inside the panel (px).

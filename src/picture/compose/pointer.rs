@@ -20,18 +20,17 @@ impl Draft<'_> {
         arriving: bool,
         gap: f64,
         room: Rectangle,
-        marks: &mut Vec<Item>,
-    ) {
+    ) -> Option<Item> {
         let speed = velocity.length();
         let share = (speed / (FAST * greatest)).min(1.0);
         if !(share > 0.0 && speed.is_finite()) {
-            return;
+            return None;
         }
-        let Some((from, distance)) = self.lens.project(point) else { return };
+        let (from, distance) = self.lens.project(point)?;
         let pixels = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
         // A displacement of one pixel, which perspective hardly shortens.
         let way = velocity / speed;
-        let Some((to, _)) = self.lens.project(point + way / pixels) else { return };
+        let (to, _) = self.lens.project(point + way / pixels)?;
         let [from, to] = [from, to].map(DVec2::from);
         let (unit, palette) = (self.scale.line(), &self.composer.palette);
         // Motion straight towards the viewer has a short arrow.
@@ -40,7 +39,7 @@ impl Draft<'_> {
         let gap = gap * unit;
         let ends = if arriving { [-gap - length, -gap] } else { [gap, gap + length] };
         let ends = ends.map(|at| from + at * along);
-        let arrow = |(ends, opacity)| arrow(ends, unit, palette.pointer, palette.background).faded(opacity);
-        marks.extend(inside(ends, room, unit, BESIDE * unit).and_then(arrow));
+        let (ends, opacity) = inside(ends, room, unit, BESIDE * unit)?;
+        arrow(ends, unit, palette.pointer, palette.background).faded(opacity)
     }
 }

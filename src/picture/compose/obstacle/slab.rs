@@ -92,7 +92,7 @@ impl Staging<'_> {
             // In the plane a plate is a line.
             let [thickness, gap] = if self.draft.flat { [0.0, CLOSE] } else { [THICKNESS * self.extent(), FREE] };
             let from = middle - thickness * out;
-            self.draft.pointer((from, velocity, greatest), arriving, gap, self.draft.viewport, marks);
+            marks.extend(self.draft.pointer((from, velocity, greatest), arriving, gap, self.draft.viewport));
         }
     }
 

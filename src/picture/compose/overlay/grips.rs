@@ -40,7 +40,7 @@ pub(super) fn draw(draft: &Draft<'_>, marks: &mut Vec<Item>) {
             let middle = nodes.iter().map(|&node| draft.position[node]).sum::<DVec3>() / nodes.len().max(1) as f64;
             let gap = PIN[usize::from(draft.flat)] + FREE;
             let (velocity, greatest) = draft.going(grip);
-            draft.pointer((middle, velocity, greatest), false, gap, draft.room, marks);
+            marks.extend(draft.pointer((middle, velocity, greatest), false, gap, draft.room));
         }
     }
 }
