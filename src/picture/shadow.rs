@@ -8,7 +8,6 @@
 use super::narrow::narrow;
 use crate::sim::geometry;
 use glam::{DVec2, DVec3};
-use std::borrow::Cow;
 
 /// Cells of a shadow in each direction.
 pub(crate) const CELLS: usize = 128;
@@ -200,36 +199,38 @@ impl SurfaceCaster {
 }
 
 /// The closed surfaces that cast shadows, with triangles counter-clockwise as seen from outside.
-pub(super) struct Casters<'a> {
+#[derive(Default)]
+pub(super) struct Casters {
     /// Points (sides from the panel's origin).
     points: Vec<DVec3>,
-    triangles: Cow<'a, [[u32; 3]]>,
-    edges: Cow<'a, [Edge]>,
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<Edge>,
     /// The number of triangles that are seen.
     count: usize,
 }
 
-impl<'a> Casters<'a> {
-    /// A surface with its [`edges`].
-    pub(super) fn new(points: Vec<DVec3>, triangles: &'a [[u32; 3]], edges: &'a [Edge]) -> Self {
-        Self { points, count: triangles.len(), triangles: Cow::Borrowed(triangles), edges: Cow::Borrowed(edges) }
-    }
-
+impl Casters {
     /// Adds a surface.
     pub(super) fn add(&mut self, points: impl Iterator<Item = DVec3>, triangles: &[[u32; 3]]) {
         if !triangles.is_empty() {
-            self.count += triangles.len();
-            self.extend(points, triangles, &edges(triangles));
+            self.extend(points, triangles, &edges(triangles), triangles.len());
         }
     }
 
     /// Adds the shape of a carried surface with its points at places.
     pub(super) fn add_shape(&mut self, points: impl Iterator<Item = DVec3>, shape: &SurfaceCaster) {
-        self.count += shape.stands_for;
-        self.extend(points, &shape.triangles, &shape.edges);
+        self.extend(points, &shape.triangles, &shape.edges, shape.stands_for);
     }
 
-    fn extend(&mut self, points: impl Iterator<Item = DVec3>, triangles: &[[u32; 3]], edges: &[Edge]) {
+    /// Adds a surface with its [`edges`], which stands for a number of triangles.
+    pub(super) fn extend(
+        &mut self,
+        points: impl Iterator<Item = DVec3>,
+        triangles: &[[u32; 3]],
+        edges: &[Edge],
+        count: usize,
+    ) {
+        self.count += count;
         let [point, triangle] = [self.points.len(), self.triangles.len()].map(|count| count as u32);
         self.points.extend(points);
         let moved = |edge: &Edge| Edge {
@@ -237,8 +238,8 @@ impl<'a> Casters<'a> {
             // A missing triangle stays missing.
             triangles: edge.triangles.map(|at| at.saturating_add(triangle)),
         };
-        self.edges.to_mut().extend(edges.iter().map(moved));
-        self.triangles.to_mut().extend(triangles.iter().map(|triangle| triangle.map(|at| point + at)));
+        self.edges.extend(edges.iter().map(moved));
+        self.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| point + at)));
     }
 
     /// Their shadows in key light and in the light of the sky on a plane, within `reach` of the origin of its axes, with `soft`

@@ -11,6 +11,13 @@ fn block() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (points.collect(), triangles)
 }
 
+/// A surface that casts a shadow.
+fn caster(points: Vec<DVec3>, triangles: &[[u32; 3]]) -> Casters {
+    let mut casters = Casters::default();
+    casters.add(points.into_iter(), triangles);
+    casters
+}
+
 fn value(shade: &Shade, at: DVec2) -> u8 {
     let corner = DVec2::new(f64::from(shade.corner[0]), f64::from(shade.corner[1]));
     let cell = ((at - corner) * CELLS as f64 / f64::from(shade.length)).floor();
@@ -25,8 +32,7 @@ fn a_block_shades_what_lies_behind_it_and_nothing_before_it() {
     let (points, triangles) = block();
     let plane = Plane::new(DVec3::Y, 0.0);
     let key = DVec3::new(-1.0, 1.0, 0.0).normalize();
-    let edges = edges(&triangles);
-    let [of_key, of_sky] = Casters::new(points, &triangles, &edges).shades(&plane, key, 4.0, 1.0);
+    let [of_key, of_sky] = caster(points, &triangles).shades(&plane, key, 4.0, 1.0);
     let on_floor = |x: f64, z: f64| DVec2::new(x * plane.axes[0].x + z * plane.axes[0].z, z * plane.axes[1].z);
     assert_eq!(value(&of_key, on_floor(0.0, 0.0)), 255);
     assert!(value(&of_key, on_floor(1.0, 0.0)) > 250);
@@ -100,9 +106,8 @@ fn wild_coordinates_do_no_harm() {
     points[3] = DVec3::new(1e300, -1e300, 1e6);
     points[5] = DVec3::splat(f64::MAX);
     let plane = Plane::new(DVec3::Y, 0.0);
-    let edges = edges(&triangles);
     let key = DVec3::new(-0.3, 0.9, 0.1).normalize();
-    let [a, b] = Casters::new(points, &triangles, &edges).shades(&plane, key, 4.0, 1.0);
+    let [a, b] = caster(points, &triangles).shades(&plane, key, 4.0, 1.0);
     assert!(a.length.is_finite() && b.length.is_finite() && a.corner.iter().all(|at| at.is_finite()));
 }
 
@@ -132,9 +137,8 @@ fn a_coarse_shape_is_closed_and_casts_nearly_the_same_shadow() {
     let shape = SurfaceCaster::new(&points, &triangles);
     assert!(shape.triangles.len() <= OF_SHAPE && shape.triangles.len() > OF_SHAPE / 4, "{}", shape.triangles.len());
     assert!(shape.edges.iter().all(|edge| edge.triangles().iter().all(Option::is_some)));
-    let edges = edges(&triangles);
-    let fine = Casters::new(points.clone(), &triangles, &edges);
-    let mut coarse = Casters::new(Vec::new(), &[], &[]);
+    let fine = caster(points.clone(), &triangles);
+    let mut coarse = Casters::default();
     coarse.add_shape(shape.points.iter().map(|&at| points[at as usize]), &shape);
     let plane = Plane::new(DVec3::Y, 0.0);
     let key = DVec3::new(-1.0, 2.0, 0.5).normalize();
@@ -157,9 +161,8 @@ fn a_thousand_boxes_in_each_other_cast_the_shadow_of_one() {
         triangles.extend(sides.iter().map(|of| of.map(|point| first + point)));
     }
     let shape = SurfaceCaster::new(&points, &triangles);
-    let one = edges(&sides);
-    let one = Casters::new(of_one, &sides, &one);
-    let mut all = Casters::new(Vec::new(), &[], &[]);
+    let one = caster(of_one, &sides);
+    let mut all = Casters::default();
     all.add_shape(shape.points.iter().map(|&at| points[at as usize]), &shape);
     let (plane, key) = (Plane::new(DVec3::Y, 0.0), DVec3::new(-1.0, 2.0, 0.5).normalize());
     let [one, all] = [one, all].map(|casters| casters.shades(&plane, key, 4.0, 1.0));

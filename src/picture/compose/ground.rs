@@ -134,22 +134,18 @@ impl Draft<'_> {
     }
 
     /// The shadow casters: body and solid obstacles.
-    fn casters(&self, staged: &Staged) -> Casters<'_> {
+    fn casters(&self, staged: &Staged) -> Casters {
         let Bodies { skin, seams, .. } = self.bodies;
         let relative = |at: &DVec3| (at - self.origin) / self.side;
         let broken = &self.snapshot.broken;
-        let mut casters = if self.skin.is_empty() {
-            Casters::new(Vec::new(), &[], &[])
-        } else if broken.contains(&true) {
-            let mut casters = Casters::new(Vec::new(), &[], &[]);
+        let mut casters = Casters::default();
+        if let Some(nodes) = self.skin.get(..skin.nodes.len()).filter(|_| !broken.contains(&true)) {
+            casters.extend(nodes.iter().map(relative), &skin.triangles, seams, skin.triangles.len());
+        } else if !self.skin.is_empty() {
             let [mut sides, _] = boundaries(self.body, &[], broken);
             sides.retain(|side| !self.is_covered(side));
             casters.add(self.position.iter().map(relative), &triangles(self.body, &sides));
-            casters
-        } else {
-            let nodes = &self.skin[..skin.nodes.len()];
-            Casters::new(nodes.iter().map(relative).collect(), &skin.triangles, seams)
-        };
+        }
         let mut carried = self.carried();
         for fine in skin.fine.iter().filter(|_| !self.skin.is_empty()) {
             let (own, others) = carried.split_at(fine.surface.rest.len());
