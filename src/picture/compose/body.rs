@@ -133,7 +133,7 @@ impl Draft<'_> {
     pub(super) fn strokes(&self) -> Vec<Stroke> {
         let visible = self.scene.view.visible;
         let (over, broken) = (&self.snapshot.turned_over, &self.snapshot.broken);
-        let (wire, edges) = (self.wire(), &self.bodies.edges);
+        let (wire, edges) = (Wire::new(self), &self.bodies.edges);
         let mut strokes = Vec::new();
         if self.position.is_empty() {
             return strokes;
@@ -175,19 +175,13 @@ impl Draft<'_> {
 
     /// Nodes.
     pub(super) fn beads(&self) -> Vec<Bead> {
-        self.bead_radius().map_or_else(Vec::new, |radius| self.wire().without_surfaces().beads(radius))
+        self.bead_radius().map_or_else(Vec::new, |radius| Wire::new(self).without_surfaces().beads(radius))
     }
 
     /// The radius of nodes (px), if they are drawn.
     pub(super) fn bead_radius(&self) -> Option<f64> {
         let drawn = self.scene.view.visible.nodes && !self.diverged;
         drawn.then(|| node_radius(self.scale, self.element))
-    }
-
-    /// Draws lines and nodes.
-    fn wire(&self) -> Wire<'_> {
-        let shades = (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..]));
-        Wire { draft: self, shades, is_bare: false }
     }
 }
 

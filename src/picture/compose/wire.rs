@@ -43,14 +43,27 @@ type Placed = (f64, Stroke);
 
 /// Draws the lines of one panel.
 pub(super) struct Wire<'a> {
-    pub(super) draft: &'a Draft<'a>,
+    draft: &'a Draft<'a>,
     /// The field that colours lines and nodes without surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
     /// Whether lines stand for elements without faces.
-    pub(super) is_bare: bool,
+    is_bare: bool,
+    /// The least and the greatest depth of nodes (m), between which haze grows; `None` without haze.
+    depths: Option<[f64; 2]>,
 }
 
-impl Wire<'_> {
+impl<'a> Wire<'a> {
+    pub(super) fn new(draft: &'a Draft<'a>) -> Self {
+        let shades = (!draft.of_nodes.is_empty()).then_some((draft.ramp(), &draft.of_nodes[..]));
+        let depths = || {
+            let depths = draft.position.iter().map(|point| point.dot(draft.lens.forward));
+            depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+        };
+        let depths = (!draft.scene.view.visible.surfaces).then(depths);
+        let depths = depths.filter(|[low, high]| high - low >= 1e-9 * draft.side);
+        Self { draft, shades, is_bare: false, depths }
+    }
+
     /// The wire without the colours of a field if surfaces show them.
     pub(super) fn without_surfaces(&self) -> Self {
         Self { shades: self.shades.filter(|_| !self.surfaces()), ..*self }
@@ -70,7 +83,6 @@ impl Wire<'_> {
     /// ones lie above the others.
     pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], ColourScale)>) -> Vec<Stroke> {
         let palette = &self.draft.palette;
-        let haze = self.haze();
         if let Some((ramp, scale)) = strain {
             let strokes = springs.iter().map(|&nodes| {
                 let strain = spring_strain(self.draft.body, &self.draft.position, nodes);
@@ -78,7 +90,7 @@ impl Wire<'_> {
                 let place = field::place(scale.of_spring(strain), scale.range);
                 let own = if place == NOWHERE { palette.spring } else { field::colour(ramp, place) };
                 let ends = nodes.map(|node| self.draft.position[node as usize]);
-                let haze = STRAINED_HAZE * haze(ends[0].midpoint(ends[1])) * (1.0 - share);
+                let haze = STRAINED_HAZE * self.haze(ends[0].midpoint(ends[1])) * (1.0 - share);
                 let [own, casing] = [own, palette.casing].map(|colour| mixed(colour, palette.background, haze));
                 let (depth, stroke) = self.straight(ends, [own; 2], Some(casing), SPRING);
                 (depth, ((share * STRAIN_STEPS).round(), stroke))
@@ -89,7 +101,7 @@ impl Wire<'_> {
         }
         let mut strokes = Vec::with_capacity(springs.len());
         for &ends in springs {
-            self.stroke(ends, palette.spring, SPRING, &haze, &mut strokes);
+            self.stroke(ends, palette.spring, SPRING, &mut strokes);
         }
         if self.surfaces() {
             let second = Second::OnBody(palette.spring_on_body);
@@ -105,21 +117,20 @@ impl Wire<'_> {
         [turned_over, broken]: [&[bool]; 2],
         only_turned_over: bool,
     ) -> Vec<Stroke> {
-        let haze = self.haze();
         let palette = &self.draft.palette;
         let (mut strokes, mut alarm) = (Vec::new(), Vec::new());
         let whole = || edges.of_elements.iter().enumerate().filter(|(at, _)| !is_broken(broken, *at as u32));
         if !only_turned_over {
             for &ends in edges.of_whole(broken).iter() {
-                self.stroke(ends, palette.spring, EDGE, &haze, &mut strokes);
+                self.stroke(ends, palette.spring, EDGE, &mut strokes);
             }
             for (element, edges) in whole().filter(|(_, edges)| edges.is_empty()) {
-                self.element(element, edges, palette.spring, EDGE, &haze, &mut strokes);
+                self.element(element, edges, palette.spring, EDGE, &mut strokes);
             }
         }
         let plain = Wire { shades: None, ..*self };
         for (element, edges) in whole().filter(|(at, _)| turned_over.get(*at).is_some_and(|&over| over)) {
-            plain.element(element, edges, palette.alarm, ALARM_EDGE, &haze, &mut alarm);
+            plain.element(element, edges, palette.alarm, ALARM_EDGE, &mut alarm);
         }
         farthest_first(strokes).chain(farthest_first(alarm)).collect()
     }
@@ -129,10 +140,10 @@ impl Wire<'_> {
         let (mut strokes, lines, palette) = (Vec::new(), Wire { is_bare: true, ..*self }, &self.draft.palette);
         for &element in elements.iter().filter(|&&element| !is_broken(broken, element as u32)) {
             let edges = self.draft.body.topology().edges_of(element);
-            lines.element(element, &edges, palette.edge, BARE, &|_| 0.0, &mut strokes);
+            lines.element(element, &edges, palette.edge, BARE, &mut strokes);
             if turned_over.get(element).is_some_and(|&over| over) {
                 let plain = Wire { shades: None, ..lines };
-                plain.element(element, &edges, palette.alarm, EDGE, &|_| 0.0, &mut strokes);
+                plain.element(element, &edges, palette.alarm, EDGE, &mut strokes);
             }
         }
         strokes.into_iter().map(|(_, stroke)| stroke).collect()
@@ -140,11 +151,10 @@ impl Wire<'_> {
 
     /// Nodes, the farthest first.
     pub(super) fn beads(&self, radius: f64) -> Vec<Bead> {
-        let haze = self.haze();
         let nodes = self.draft.position.iter().enumerate().map(|(node, &at)| (self.depth(at), node));
         let bead = |node: usize| {
             // A disc is light, so that its rim is visible; distant rims are fainter.
-            let faded = 0.8 * haze(self.draft.position[node]);
+            let faded = 0.8 * self.haze(self.draft.position[node]);
             Bead {
                 at: self.draft.relative(self.draft.position[node]),
                 radius: narrow(radius),
@@ -160,16 +170,8 @@ impl Wire<'_> {
     }
 
     /// The edges of an element or, if it has none, lines from its middle to its nodes.
-    fn element(
-        &self,
-        element: usize,
-        edges: &[[u32; 2]],
-        colour: Colour,
-        width: f64,
-        haze: &dyn Fn(DVec3) -> f64,
-        strokes: &mut Vec<Placed>,
-    ) {
-        edges.iter().for_each(|&ends| self.stroke(ends, colour, width, haze, strokes));
+    fn element(&self, element: usize, edges: &[[u32; 2]], colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
+        edges.iter().for_each(|&ends| self.stroke(ends, colour, width, strokes));
         if edges.is_empty() {
             let nodes = &self.draft.body.elements()[element];
             let at = |node: u32| self.draft.position[node as usize];
@@ -183,16 +185,9 @@ impl Wire<'_> {
     }
 
     /// A line between two nodes, divided where its colours require it.
-    fn stroke(
-        &self,
-        [a, b]: [u32; 2],
-        colour: Colour,
-        width: f64,
-        haze: &dyn Fn(DVec3) -> f64,
-        strokes: &mut Vec<Placed>,
-    ) {
+    fn stroke(&self, [a, b]: [u32; 2], colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
         let [from, to] = [a, b].map(|node| self.draft.position[node as usize]);
-        let faded = |colour, point| mixed(colour, self.draft.palette.background, haze(point));
+        let faded = |colour, point| mixed(colour, self.draft.palette.background, self.haze(point));
         let places = self.shades.map(|(ramp, places)| (ramp, [a, b].map(|node| places[node as usize])));
         let Some((ramp, places)) = places.filter(|(_, places)| !places.contains(&NOWHERE)) else {
             let colours = [from, to].map(|end| faded(colour, end));
@@ -237,13 +232,9 @@ impl Wire<'_> {
     }
 
     /// The share of the background at a point; zero with surfaces.
-    fn haze(&self) -> impl Fn(DVec3) -> f64 {
-        let depth = |point: &DVec3| point.dot(self.draft.lens.forward);
-        let depths = self.draft.position.iter().map(depth);
-        let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
-        let most = if self.surfaces() || high - low < 1e-9 * self.draft.side { 0.0 } else { HAZE };
-        let forward = self.draft.lens.forward;
-        move |point| most * ((point.dot(forward) - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    fn haze(&self, point: DVec3) -> f64 {
+        let deep = |[low, high]: [f64; 2]| (point.dot(self.draft.lens.forward) - low) / (high - low);
+        self.depths.map_or(0.0, |depths| HAZE * deep(depths).clamp(0.0, 1.0))
     }
 }
 
