@@ -1,7 +1,7 @@
 //! The camera of a panel, in double precision.
 
 use super::layout;
-use super::narrow::narrow_row;
+use super::narrow::narrow_rows;
 use crate::look::{Camera, View, axes};
 use crate::sim::Dimension;
 use glam::{DVec3, DVec4, Mat4};
@@ -121,8 +121,7 @@ impl Lens {
         let y = row(self.up, 2.0 * focal / height);
         let away = if self.orthographic { DVec4::W } else { row(self.forward, 1.0) };
         let near = self.near_in(unit) * DVec4::W;
-        let rows = [x + shift[0] * away, y + shift[1] * away, near, away].map(narrow_row);
-        Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
+        narrow_rows([x + shift[0] * away, y + shift[1] * away, near, away])
     }
 
     /// Distance of the near plane, in the unit of [`Self::clip`].

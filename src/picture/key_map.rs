@@ -1,7 +1,7 @@
 //! The box in which the key light casts shadows of bodies and obstacles on each other.
 
 use super::Mesh;
-use super::narrow::narrow_row;
+use super::narrow::narrow_rows;
 use super::shadow::Plane;
 use glam::{DVec3, DVec4, Mat4};
 
@@ -35,8 +35,7 @@ pub(super) fn key_map<'a>(key: DVec3, bodies: [&Mesh; 2], obstacles: impl Iterat
     let above = nearest.fold(half, |above, at| above.max(at - middle.z)).min(FARTHEST * half);
     let row = |at: usize, length: f64, add: f64| (axes[at] / length).extend(add - middle[at] / length);
     let depth = half + above;
-    let rows = [row(0, half, 0.0), row(1, half, 0.0), row(2, depth, half / depth), DVec4::W].map(narrow_row);
-    Some(Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose())
+    Some(narrow_rows([row(0, half, 0.0), row(1, half, 0.0), row(2, depth, half / depth), DVec4::W]))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Narrowing from double to single precision; nowhere else in `picture`.
 
-use glam::{DVec3, DVec4, Vec3, Vec4};
+use glam::{DVec3, DVec4, Mat4, Vec3};
 
 /// The largest coordinate of a picture: far outside of any panel, but products of four coordinates are finite.
 const FARTHEST: f64 = 1e6;
@@ -28,13 +28,13 @@ pub(super) fn narrow_point(point: DVec3) -> Vec3 {
     Vec3::new(narrow(point.x), narrow(point.y), narrow(point.z))
 }
 
-/// A row of a matrix. Its numbers may be much larger than coordinates, so that distant objects and the strongest lenses
+/// A matrix of rows. Its numbers may be much larger than coordinates, so that distant objects and the strongest lenses
 /// are not distorted.
 #[expect(clippy::cast_possible_truncation, reason = "the numbers are kept in range")]
-pub(super) fn narrow_row(row: DVec4) -> Vec4 {
+pub(super) fn narrow_rows(rows: [DVec4; 4]) -> Mat4 {
     const LARGEST: f64 = 1e15;
     let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-LARGEST, LARGEST) as f32 };
-    Vec4::new(one(row.x), one(row.y), one(row.z), one(row.w))
+    Mat4::from_cols_array_2d(&rows.map(|row| row.to_array().map(one))).transpose()
 }
 
 #[cfg(test)]
