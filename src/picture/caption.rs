@@ -170,19 +170,15 @@ impl Writer<'_> {
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let free = words.width() - if taken > 0.0 { taken + self.scale.gap() } else { 0.0 };
         let baseline = words.title;
-        let mut left = words.left;
-        if !heading.letter.is_empty() {
-            self.left(&heading.letter, Weight::SemiBold, title, self.palette.second_text, left, baseline);
-            left += self.fonts.width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
-        }
-        let sample = heading.sample.filter(|_| !heading.name.is_empty());
-        let reserved = if sample.is_some() { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
+        let [letter, reserved] = self.beside_name(heading);
+        let left = words.left + letter;
+        self.left(&heading.letter, Weight::SemiBold, title, self.palette.second_text, words.left, baseline);
         let free_for_name = free - (left - words.left) - reserved;
         // All names become smaller before one is cut.
         let size = self.size_of_names(heading, free_for_name);
         let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, size, free_for_name);
         self.left(&name, Weight::SemiBold, size, self.palette.text, left, baseline);
-        if let Some(sample) = sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
+        if let Some(sample) = heading.sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
             let left = left + self.fonts.width(&name, Weight::SemiBold, size) + BESIDE * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
@@ -214,15 +210,21 @@ impl Writer<'_> {
         first - (1.0 - least) * name > room
     }
 
-    /// The widths of both lines of a heading (px), the first one with letter and sample.
-    fn heading_width(&self, heading: &Heading<'_>) -> [f64; 2] {
+    /// The widths of the letter before a name, with its gap, and of the sample behind it (px).
+    fn beside_name(&self, heading: &Heading<'_>) -> [f64; 2] {
         let title = self.scale.title();
-        let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
-        let letter = if heading.letter.is_empty() { 0.0 } else { wide(&heading.letter) + LETTER_GAP * title };
+        let letter = self.fonts.width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
         let has_sample = heading.sample.is_some() && !heading.name.is_empty();
         let sample = if has_sample { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
+        [if heading.letter.is_empty() { 0.0 } else { letter }, sample]
+    }
+
+    /// The widths of both lines of a heading (px), the first one with letter and sample.
+    fn heading_width(&self, heading: &Heading<'_>) -> [f64; 2] {
+        let [letter, sample] = self.beside_name(heading);
+        let name = self.fonts.width(heading.name, Weight::SemiBold, self.scale.title());
         let second = self.fonts.width(heading.second, Weight::Regular, self.scale.caption());
-        [letter + wide(heading.name) + sample, second]
+        [letter + name + sample, second]
     }
 
     /// Whether the heading leaves no room for the clock.
