@@ -14,7 +14,6 @@ use super::text::Weight;
 use crate::colour::Colour;
 use crate::look::{BODIES, View};
 use glam::DVec2;
-use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// The least width of the bar with its name, in those of a sample.
@@ -39,13 +38,13 @@ pub(super) struct Bar<'a> {
 }
 
 /// A line or a mark with its meaning.
-pub(super) struct Sample<'a> {
+pub(super) struct Sample {
     /// Wordings of its name, at least one. The longest one that fits is used.
-    pub(super) names: Vec<Cow<'a, str>>,
+    pub(super) names: Vec<String>,
     pub(super) kind: SampleKind,
 }
 
-impl Sample<'_> {
+impl Sample {
     /// The width of its mark, and its least width with its name (px in the reference picture).
     fn least(&self) -> [f64; 2] {
         match self.kind {
@@ -102,12 +101,12 @@ impl Legend {
         self,
         writer: &mut Writer<'_>,
         [width, top]: [f64; 2],
-        samples: &[Sample<'_>],
+        samples: &[Sample],
         bar: Option<&Bar<'_>>,
     ) {
         let (unit, margin) = (self.unit, writer.scale.margin());
         let gap = |at: usize| if at > 0 { MARGIN * unit } else { 0.0 };
-        let wide = |sample: &Sample<'_>| {
+        let wide = |sample: &Sample| {
             let name = writer.fonts.width(&sample.names[0], Weight::Regular, TEXT * unit);
             (sample.least()[0] + BESIDE) * unit + name
         };
@@ -127,7 +126,7 @@ impl Legend {
     }
 
     /// A sample with its name.
-    fn sample(self, writer: &mut Writer<'_>, [left, top, width, _]: tree::Place, sample: &Sample<'_>) {
+    fn sample(self, writer: &mut Writer<'_>, [left, top, width, _]: tree::Place, sample: &Sample) {
         let (unit, palette, fonts) = (self.unit, writer.palette, writer.fonts);
         let (middle, mut length) = (top + 0.5 * (BESIDE * unit).round(), sample.least()[0] * unit);
         let curve = |[from, to]: [f64; 2], dash: &[f64], colour: Colour| {
@@ -168,7 +167,7 @@ impl Legend {
         }
         let before = length + BESIDE * unit;
         let (size, room) = (TEXT * unit, width - before);
-        let fits = |name: &&Cow<'_, str>| fonts.width(name, Weight::Regular, size) <= room + 1e-6;
+        let fits = |name: &&String| fonts.width(name, Weight::Regular, size) <= room + 1e-6;
         let name = sample.names.iter().find(fits).or(sample.names.last()).map_or("", |name| name);
         let name = fonts.shortened(name, Weight::Regular, size, room + 1e-6);
         writer.left(&name, Weight::Regular, size, palette.second_text, left + before, middle + 0.34 * size);

@@ -10,19 +10,19 @@ use crate::runner::{Frame, RunFrame};
 
 impl Composer<'_> {
     /// Samples of overlays and bodies with their meanings.
-    pub(super) fn samples(&self, place: &KeyPlace<'_>) -> Vec<Sample<'_>> {
+    pub(super) fn samples(&self, place: &KeyPlace) -> Vec<Sample> {
         overlay::samples(self, place).chain(self.samples_of_bodies()).collect()
     }
 
     /// A sample of each colour of bodies and regions, with their names. A single body needs none.
-    fn samples_of_bodies(&self) -> impl Iterator<Item = Sample<'_>> {
+    fn samples_of_bodies(&self) -> impl Iterator<Item = Sample> {
         let (names, palette) = (self.scene.view.coloured_bodies(), &self.palette);
         let colours = if self.scene.is_lit() { palette.bodies } else { palette.bodies_flat };
         colours.into_iter().enumerate().take(names.len()).filter_map(move |(at, colour)| {
             let names = names.iter().skip(at).step_by(BODIES).map(String::as_str);
             let names: Vec<_> = names.filter(|name| !name.is_empty()).collect();
             let kind = SampleKind::Body([colour, palette.outline]);
-            (!names.is_empty()).then(|| Sample { names: vec![names.join(", ").into()], kind })
+            (!names.is_empty()).then(|| Sample { names: vec![names.join(", ")], kind })
         })
     }
 

@@ -208,7 +208,7 @@ impl<'a> Composer<'a> {
         }
         let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
         if let Some(((legend, ([_, top, width, _], &panel)), framing)) = legend.zip(place).zip(framings.first()) {
-            let samples = self.samples(&KeyPlace { legend, viewport: panel, framing, scale });
+            let samples = self.samples(&KeyPlace::new(self, legend, panel, framing, scale));
             legend.draw(&mut writer, [width, top], &samples, self.bar(frame).as_ref());
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));

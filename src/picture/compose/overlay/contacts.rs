@@ -16,8 +16,8 @@ const LENGTH: f64 = 0.5;
 const MOST_DOT: f64 = 0.09;
 
 /// A hollow arrow with its force in words.
-pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-    let length = place.pixels_a_metre(composer) * metres_a_newton(composer.scene);
+pub(super) fn samples(composer: &Composer<'_>, place: &KeyPlace) -> Vec<Sample> {
+    let length = place.pixels * metres_a_newton(composer.scene);
     let force = number::round_below(place.legend.arrow_length() / length);
     let words = number::value(Diagnostic::ContactForce, force, composer.extent);
     vec![place.arrow(composer, vec![format!("contact force {words}"), words], force * length, arrows::hollow)]

@@ -9,8 +9,8 @@ use crate::picture::order::farthest_first;
 use crate::picture::{Item, arrows, number};
 
 /// An arrow with its length in words.
-pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-    let (pixels, scale) = (place.pixels_a_metre(composer), composer.scene.view.arrow_scale);
+pub(super) fn samples(composer: &Composer<'_>, place: &KeyPlace) -> Vec<Sample> {
+    let (pixels, scale) = (place.pixels, composer.scene.view.arrow_scale);
     let metres = number::round_below(place.legend.arrow_length() / (pixels * scale));
     let length = number::round_length(metres, composer.extent);
     vec![place.arrow(

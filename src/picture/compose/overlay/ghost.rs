@@ -12,14 +12,13 @@ use crate::picture::page::Pen;
 use crate::picture::{Item, arrows, ghost};
 use crate::sim::Status;
 use glam::{DVec2, DVec3};
-use std::borrow::Cow;
 
 /// The opacity of the casing of outlines.
 const HALO_ALPHA: f64 = 0.65;
 
 /// A dashed line with the name of what it outlines.
-pub(super) fn samples<'c>(composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-    let sample = |(name, colour): (_, _)| Sample { names: vec![Cow::from(name)], kind: SampleKind::Ghost(colour) };
+pub(super) fn samples(composer: &Composer<'_>, _: &KeyPlace) -> Vec<Sample> {
+    let sample = |(name, colour)| Sample { names: vec![name], kind: SampleKind::Ghost(colour) };
     look(composer).map(sample).into_iter().collect()
 }
 
@@ -42,10 +41,12 @@ pub(super) fn draw(draft: &Draft<'_>, curves: &mut Vec<Item>) {
 }
 
 /// The name and the colour of the scene's ghosts, if it has any.
-fn look<'c>(composer: &'c Composer<'_>) -> Option<(&'c str, Colour)> {
+fn look(composer: &Composer<'_>) -> Option<(String, Colour)> {
     Some(match composer.scene.view.ghost? {
-        Ghost::Rest => ("rest shape, best fit", composer.palette.second_text),
-        Ghost::Run(run) => (&composer.scene.runs[run].name, composer.scene.runs[run].line(&composer.palette).colour),
+        Ghost::Rest => ("rest shape, best fit".to_owned(), composer.palette.second_text),
+        Ghost::Run(run) => {
+            (composer.scene.runs[run].name.clone(), composer.scene.runs[run].line(&composer.palette).colour)
+        }
     })
 }
 

@@ -21,8 +21,8 @@ const ARC: [f64; 2] = [1.25, 0.75];
 const PIECES: usize = 32;
 
 /// An arrow with its force or its pressure in words, and an arc with the largest torque.
-pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-    let pixels = place.pixels_a_metre(composer);
+pub(super) fn samples(composer: &Composer<'_>, place: &KeyPlace) -> Vec<Sample> {
+    let pixels = place.pixels;
     let room = place.legend.arrow_length() / pixels;
     let scales = Scales::new(composer.scene);
     // Not longer than the arrow of any largest load that there is.
@@ -41,17 +41,14 @@ pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> V
         let size = quantity(value, unit) + &also;
         // Loads that rise or fall, and small ones beside a large one, may be seen as dots.
         let mut names = vec![format!("load {size}"), size];
-        if has_small(composer.scene, &scales, shortest_load(place.size(composer)) / pixels) {
+        if has_small(composer.scene, &scales, shortest_load(place.size) / pixels) {
             names.insert(0, format!("{}, dots: smaller loads", names[0]));
         }
         place.arrow(composer, names, value * metres * pixels, arrows::with_halo)
     });
     let turning = (scales.torque > 0.0).then(|| {
         let size = quantity(scales.torque, "N m");
-        Sample {
-            names: vec![format!("torque {size}").into(), size.into()],
-            kind: SampleKind::Arc(place.size(composer)),
-        }
+        Sample { names: vec![format!("torque {size}"), size], kind: SampleKind::Arc(place.size) }
     });
     straight.into_iter().chain(turning).collect()
 }

@@ -19,7 +19,6 @@ use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Legend, Sample, SampleKind};
 use crate::picture::{Framing, Item};
 use glam::DVec3;
-use std::borrow::Cow;
 
 /// Radius of a dot, in radii of a ring; its least one (px).
 const DOT: f64 = 0.5;
@@ -34,35 +33,37 @@ pub(super) const MARKS: [Draw; 5] = [height::draw, grips::draw, displacements::d
 pub(super) const CURVES: [Draw; 2] = [ghost::draw, paths::draw];
 
 /// The samples of an overlay in a key.
-type Samples = for<'c> fn(&'c Composer<'_>, &KeyPlace<'_>) -> Vec<Sample<'c>>;
+type Samples = fn(&Composer<'_>, &KeyPlace) -> Vec<Sample>;
 
 /// Those of the overlays that keys explain, in the order of [`View::explained`].
 const SAMPLES: [Samples; 5] =
     [displacements::samples, loads::samples, contacts::samples, ghost::samples, paths::samples];
 
-/// A key, and the first panel that it explains.
-pub(in crate::picture) struct KeyPlace<'a> {
-    pub(super) legend: Legend,
-    pub(super) viewport: Rectangle,
-    pub(super) framing: &'a Framing,
-    pub(super) scale: Scale,
+/// A key, and the scale of the panels that it explains.
+pub(in crate::picture) struct KeyPlace {
+    legend: Legend,
+    /// Pixels per metre at the target of a panel.
+    pixels: f64,
+    /// The size of arrows, relative to the reference picture.
+    size: f64,
 }
 
-impl KeyPlace<'_> {
-    /// Pixels per metre at the target of its panel.
-    fn pixels_a_metre(&self, composer: &Composer<'_>) -> f64 {
-        composer.pixels_a_metre(self.viewport, self.framing, self.scale)
-    }
-
-    /// The size of arrows, relative to the reference picture.
-    fn size(&self, composer: &Composer<'_>) -> f64 {
-        arrows::size(self.pixels_a_metre(composer) * composer.scene.view.side, self.scale.unit)
+impl KeyPlace {
+    /// A key, with the first panel that it explains.
+    pub(super) fn new(
+        composer: &Composer<'_>,
+        legend: Legend,
+        viewport: Rectangle,
+        framing: &Framing,
+        scale: Scale,
+    ) -> Self {
+        let pixels = composer.pixels_a_metre(viewport, framing, scale);
+        Self { legend, pixels, size: arrows::size(pixels * composer.scene.view.side, scale.unit) }
     }
 
     /// The sample of an arrow of a length (px), with wordings of its meaning.
-    fn arrow<'c>(&self, composer: &Composer<'_>, names: Vec<String>, length: f64, draw: DrawArrow) -> Sample<'c> {
-        let kind = SampleKind::Arrow([length, self.size(composer)], composer.palette.text, draw);
-        Sample { names: names.into_iter().map(Cow::from).collect(), kind }
+    fn arrow(&self, composer: &Composer<'_>, names: Vec<String>, length: f64, draw: DrawArrow) -> Sample {
+        Sample { names, kind: SampleKind::Arrow([length, self.size], composer.palette.text, draw) }
     }
 }
 
@@ -102,7 +103,7 @@ fn shortest_arrow(size: f64) -> f64 {
 }
 
 /// The samples of overlays in a key.
-pub(super) fn samples<'c>(composer: &'c Composer<'_>, place: &KeyPlace<'_>) -> impl Iterator<Item = Sample<'c>> {
+pub(super) fn samples(composer: &Composer<'_>, place: &KeyPlace) -> impl Iterator<Item = Sample> {
     let explained = SAMPLES.into_iter().zip(composer.scene.view.explained()).filter(|&(_, is_explained)| is_explained);
     explained.flat_map(move |(samples, _)| samples(composer, place))
 }

@@ -11,7 +11,6 @@ use crate::picture::legend::{Sample, SampleKind};
 use crate::picture::plane::pieces;
 use crate::runner::history::TimeSeries;
 use glam::DVec2;
-use std::borrow::Cow;
 
 /// The opacity of the halo of a path.
 const HALO_ALPHA: f64 = 0.6;
@@ -19,11 +18,10 @@ const HALO_ALPHA: f64 = 0.6;
 const DOT: f64 = 1.7;
 
 /// A line with a part for each run.
-pub(super) fn samples<'c>(composer: &'c Composer<'_>, _: &KeyPlace<'_>) -> Vec<Sample<'c>> {
-    let names: Vec<_> = names(&composer.scene.view).into_iter().map(Cow::from).collect();
+pub(super) fn samples(composer: &Composer<'_>, _: &KeyPlace) -> Vec<Sample> {
     let colour = |series: &TimeSeries| composer.scene.runs[series.run].line(&composer.palette).colour;
     let kind = SampleKind::Path(composer.traced.iter().map(colour).collect());
-    vec![Sample { names, kind }]
+    vec![Sample { names: names(&composer.scene.view), kind }]
 }
 
 /// Paths of the centre and of nodes up to the present moment, for the known part of the run's time series.

@@ -198,7 +198,7 @@ impl<'a> Diagram<'a> {
     }
 
     /// The contents of the key, with bodies at a scale (px/m).
-    fn samples(&self, palette: &Palette, key: Legend, pixels: f64) -> Vec<Sample<'static>> {
+    fn samples(&self, palette: &Palette, key: Legend, pixels: f64) -> Vec<Sample> {
         let side = self.composers[0].scene.view.side * pixels;
         let share = round_below(key.arrow_length() / side);
         let arrow = match self.forces.vectors {
@@ -207,13 +207,13 @@ impl<'a> Diagram<'a> {
         };
         let of_compared = self.forces.compare.map(|run| {
             let run = &self.runs[run];
-            let names = vec![format!("forces of “{}”, for comparison", run.name).into()];
+            let names = vec![format!("forces of “{}”, for comparison", run.name)];
             let lengths = [key.arrow_length(), self.scale.line()];
             Sample { names, kind: SampleKind::Arrow(lengths, run.line(palette).colour, outlined) }
         });
         let samples = [
             Sample {
-                names: vec![arrow.into()],
+                names: vec![arrow],
                 kind: SampleKind::Arrow([share * side, self.scale.line()], palette.text, with_halo),
             },
             Sample { names: vec!["rest shape, best fit".into()], kind: SampleKind::Ghost(palette.second_text) },

@@ -60,8 +60,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     let written = write_below(&mut writer, layout, &composers, sheet, moments);
     if let Some((legend, [_, top, ..])) = plan.legend.zip(layout.page.get(Part::Legend)) {
         let first = &composers[0];
-        let (viewport, scale) = (layout.tile(0, 0), layout.tile_scale);
-        let samples = first.samples(&KeyPlace { legend, viewport, framing: &framings[0], scale });
+        let place = KeyPlace::new(first, legend, layout.tile(0, 0), &framings[0], layout.tile_scale);
+        let samples = first.samples(&place);
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
