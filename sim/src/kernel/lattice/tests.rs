@@ -3,13 +3,13 @@
 use super::*;
 use crate::contact::{Bound, Obstacle, Shape};
 use crate::kernel::tests::{
-    FREE, Moving, PEFRL, Whole, obstacle, same, shape_based, stepped_by_reference, with_rotations,
+    FREE, Moving, SCHEMES, Whole, obstacle, same, shape_based, stepped_by_reference, with_rotations,
 };
 use crate::lists::IndexLists;
 use crate::material::Material;
 use crate::model::shape_based::{DampingReading, ShapeBased};
 use crate::noise::Noise;
-use crate::state::{Runaway, State};
+use crate::state::State;
 use crate::surroundings::Surroundings;
 use glam::DQuat;
 use std::sync::Arc;
@@ -142,8 +142,6 @@ fn distance(a: &State, b: &State) -> f64 {
     of(&a.position, &b.position).max(of(&a.velocity, &b.velocity))
 }
 
-const SCHEMES: [Scheme; 4] = [Scheme::SemiImplicitEuler, Scheme::ExplicitEuler, Scheme::VelocityVerlet, PEFRL];
-
 const EXTENTS: [[usize; 3]; 9] =
     [[1, 1, 1], [1, 1, 5], [1, 4, 1], [7, 1, 3], [3, 3, 3], [9, 2, 2], [8, 3, 2], [17, 2, 1], [2, 13, 3]];
 
@@ -231,48 +229,6 @@ fn every_number_of_threads_has_the_same_bits() {
             }
         }
     }
-}
-
-#[test]
-fn before_a_runaway_the_state_is_that_of_the_step_before() {
-    let body = lattice([5, 3, 6], DVec3::splat(0.5));
-    let start = with_rotations(&body, start(&body, 0.05));
-    // Far beyond the limit of stability.
-    let parameters = Parameters { step: 0.06, ..parameters(0.0, Rotation::Optimum) };
-    let around = Around { speed_limit: &|step| 1e6 + step as f64, ..FREE };
-    for scheme in SCHEMES {
-        let make = |threads| kernel(&body, &start, parameters, scheme, Set::best(), threads);
-        let read = |kernel: &mut Moving| (kernel.0.steps(), kernel.stored(&start));
-        let mut one = make(1);
-        let runaway = one.advance(1000, around).expect_err("unstable");
-        let taken = one.0.steps();
-        assert!((1..1000).contains(&taken), "{taken}");
-        let mut up_to_there = make(1);
-        assert_eq!(up_to_there.advance(taken, around), Ok(()));
-        assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
-        assert_eq!(up_to_there.advance(1, around), Err(runaway));
-        assert!(read(&mut one) == read(&mut up_to_there), "{scheme:?}");
-        // In calls of one step, and with several threads.
-        for (threads, steps) in [(1, 1), (2, 1000), (3, 1000), (3, 7)] {
-            let mut other = make(threads);
-            let lost = (0..1000).find_map(|_| other.advance(steps, around).err());
-            assert_eq!(lost, Some(runaway));
-            assert!(read(&mut other) == read(&mut one), "{scheme:?} {threads} {steps}");
-        }
-    }
-}
-
-#[test]
-fn what_is_no_number_is_lost_at_once() {
-    let body = lattice([3, 2, 2], DVec3::splat(0.5));
-    let (mut state, memory) = with_rotations(&body, start(&body, 0.0));
-    state.position[17].y = f64::NAN;
-    let start = (state, memory);
-    let parameters = parameters(0.1, Rotation::Optimum);
-    let mut kernel = kernel(&body, &start, parameters, Scheme::SemiImplicitEuler, Set::best(), 1);
-    assert!(matches!(kernel.advance(3, FREE), Err(Runaway { .. })) && kernel.0.steps() == 0);
-    let (found, _) = kernel.stored(&start);
-    assert!(found.position[17].y.is_nan() && found.position[0] == start.0.position[0]);
 }
 
 #[test]

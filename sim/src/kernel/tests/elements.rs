@@ -3,22 +3,11 @@
 use super::*;
 use crate::kernel::general::{SMALL, layout::parts};
 
-/// Steps a body with the lanes of every set, which must agree bit for bit, and with the reference.
-fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, damping: f64, scheme: Scheme) {
-    let start = with_rotations(body, start);
-    let (found, _) = same(Set::all(), &[1], |set, _| {
-        let mut kernel = general(body, &start, rotation, damping, scheme, set);
-        // The result does not depend on how steps are divided into calls.
-        for steps in [1, 7, 100, STEPS - 108] {
-            assert_eq!(kernel.advance(steps, FREE), Ok(()), "{name}");
-        }
-        kernel.stored(&start)
-    });
-    let model = shape_based(rotation, damping);
-    let mut world = reference(body, &start.0, &model, scheme, Vec::new());
-    world.advance(STEPS);
-    let far = distance(&found, world.state());
-    assert!(far <= 1e-12, "{name}, {rotation:?}, D = {damping}, {scheme:?}: {far:e}");
+/// Steps a body by the law of the shape model.
+fn compare(name: &str, body: &Arc<Body>, start: State, model: &ShapeBased, scheme: Scheme, steps: u64) {
+    let start = &with_rotations(body, start);
+    let by_law = |conditions: &Conditions| model.by_law(body, conditions, None).stepper;
+    Case { body, start, model, scheme, steps }.compare(name, Set::all(), &[1], by_law);
 }
 
 #[test]
@@ -42,7 +31,7 @@ fn any_elements_step_like_the_reference() {
     ] {
         for rotation in [TWICE, Rotation::Optimum] {
             for damping in [0.0, 10.0] {
-                compare(name, &body, start(&body, 1), rotation, damping, Scheme::SemiImplicitEuler);
+                compare(name, &body, start(&body, 1), &shape_based(rotation, damping), SEMI, STEPS);
             }
         }
     }
@@ -51,9 +40,9 @@ fn any_elements_step_like_the_reference() {
 #[test]
 fn any_scheme_steps_like_the_reference() {
     for (name, body) in [("anything", pieces([3, 2, 3], &[4, 5, 6, 8], 6)), ("flat", pieces([4, 3, 0], &[3, 4], 7))] {
-        for scheme in [Scheme::ExplicitEuler, Scheme::VelocityVerlet, PEFRL] {
+        for scheme in SCHEMES {
             for damping in [0.0, 10.0] {
-                compare(name, &body, start(&body, 2), TWICE, damping, scheme);
+                compare(name, &body, start(&body, 2), &shape_based(TWICE, damping), scheme, STEPS);
             }
         }
     }
@@ -66,17 +55,11 @@ fn a_body_of_several_parts_steps_like_the_reference() {
     let many = pieces([45, 33, 33], &[4, 6, 8], 11);
     for (body, steps, is_large) in [(some(), 50, false), (filled(stiffened(some())), 50, false), (many, 3, true)] {
         assert_eq!(parts(&body.elements) > SMALL, is_large);
-        let start = with_rotations(&body, start(&body, 3));
-        let mut world = reference(&body, &start.0, &shape_based(TWICE, 10.0), Scheme::SemiImplicitEuler, Vec::new());
-        world.advance(steps);
-        let (found, _) = same(Set::all().skip(1), &[1, 2, 3], |set, threads| {
-            let kernel = shape_based(TWICE, 10.0).by_law(&body, &conditions(SEMI, set), None).stepper;
-            let mut kernel = Moving::new(kernel, &start, SEMI, threads);
-            assert_eq!(kernel.advance(steps, FREE), Ok(()));
-            kernel.stored(&start)
+        let (start, model) = (with_rotations(&body, start(&body, 3)), shape_based(TWICE, 10.0));
+        let case = Case { body: &body, start: &start, model: &model, scheme: SEMI, steps };
+        case.compare("several parts", Set::all().skip(1), &[1, 2, 3], |conditions| {
+            model.by_law(&body, conditions, None).stepper
         });
-        let far = distance(&found, world.state());
-        assert!(far <= 1e-12, "{far:e}");
     }
 }
 
@@ -96,16 +79,7 @@ fn elements_without_a_guide_step_like_the_reference() {
             let place = &mut start.position[node as usize];
             *place = middle + (*place - middle) * crush;
         }
-        let start = with_rotations(&body, start);
-        let model = shape_based(Rotation::Optimum, 10.0);
-        let mut world = reference(&body, &start.0, &model, Scheme::SemiImplicitEuler, Vec::new());
-        world.advance(20);
-        for set in Set::all() {
-            let mut kernel = general(&body, &start, Rotation::Optimum, 10.0, SEMI, set);
-            assert_eq!(kernel.advance(20, FREE), Ok(()), "{name}");
-            let far = distance(&kernel.stored(&start).0, world.state());
-            assert!(far <= 1e-12, "{name}: {far:e}");
-        }
+        compare(name, &body, start, &shape_based(Rotation::Optimum, 10.0), SEMI, 20);
     }
     // In the plane all angles are equally good for a triangle at a point: the last one is kept.
     let body = pieces([1, 1, 0], &[3], 13);

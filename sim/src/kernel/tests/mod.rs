@@ -214,6 +214,40 @@ impl Moving {
     }
 }
 
+/// A start from which the reference steps a body.
+struct Case<'a> {
+    body: &'a Arc<Body>,
+    start: &'a Whole,
+    model: &'a dyn ElasticModel,
+    scheme: Scheme,
+    steps: u64,
+}
+
+impl Case<'_> {
+    /// Steps it by a kernel with the lanes of some sets on each number of threads, which must agree bit for bit, and with the reference.
+    fn compare(
+        &self,
+        name: &str,
+        sets: impl Iterator<Item = Set>,
+        threads: &[usize],
+        kernel: impl Fn(&Conditions) -> Box<dyn Stepper>,
+    ) {
+        let &Self { body, start, model, scheme, steps } = self;
+        let (found, _) = same(sets, threads, |set, threads| {
+            let mut kernel = Moving::new(kernel(&conditions(scheme, set)), start, scheme, threads);
+            // The result does not depend on how steps are divided into calls.
+            for steps in [1, steps / 9, steps / 3, steps - 1 - steps / 9 - steps / 3] {
+                assert_eq!(kernel.advance(steps, FREE), Ok(()), "{name}");
+            }
+            kernel.stored(start)
+        });
+        let mut world = reference(body, &start.0, model, scheme, Vec::new());
+        world.advance(steps);
+        let far = distance(&found, world.state());
+        assert!(far <= 1e-12, "{name}, {model:?}, {scheme:?}: {far:e}");
+    }
+}
+
 fn general(body: &Arc<Body>, start: &Whole, rotation: Rotation, damping: f64, scheme: Scheme, set: Set) -> Moving {
     let compiled = shape_based(rotation, damping).by_law(body, &conditions(scheme, set), None);
     Moving::new(compiled.stepper, start, scheme, 1)
@@ -284,4 +318,6 @@ fn distance(a: &State, b: &State) -> f64 {
 
 pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
 const SEMI: Scheme = Scheme::SemiImplicitEuler;
+/// All schemes of kernels.
+pub(super) const SCHEMES: [Scheme; 4] = [SEMI, Scheme::ExplicitEuler, Scheme::VelocityVerlet, PEFRL];
 pub(super) const PEFRL: Scheme = Scheme::Composition(composition::PEFRL);

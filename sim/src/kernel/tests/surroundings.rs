@@ -1,6 +1,7 @@
 //! Obstacles, grips and the speed limit, with all kernels.
 
 use super::*;
+use crate::kernel::Vectorised;
 
 #[test]
 fn nodes_rebound_as_in_the_reference() {
@@ -31,39 +32,43 @@ fn nodes_rebound_as_in_the_reference() {
     }
 }
 
-/// The step in which a node becomes too fast is rejected and those before are kept, for any division into calls.
+/// The step in which a node becomes too fast is rejected and those before are kept, for any division into calls and number of threads.
 #[test]
 fn a_runaway_leaves_the_state_before_its_step() {
-    let body = pieces([4, 3, 4], &[4, 8], 15);
-    let start = with_rotations(&body, start(&body, 5));
-    for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet, PEFRL] {
-        for damping in [0.0, 10.0] {
-            let make = || general(&body, &start, TWICE, damping, scheme, Set::best());
-            let mut one_by_one = make();
-            // It falls, and becomes too fast at some time.
-            let limit = 8.0;
-            let around = Around { speed_limit: &|_| limit, ..FREE };
+    // It falls, and becomes too fast at some time.
+    const LIMIT: f64 = 8.0;
+    let around = Around { speed_limit: &|_| LIMIT, ..FREE };
+    for body in [pieces([4, 3, 4], &[4, 8], 15), whole([4, 3, 6], 0.0, 15)] {
+        let start = with_rotations(&body, start(&body, 5));
+        let kernel = |start: &Whole, damping: f64, scheme: Scheme, threads: usize| {
+            let compiled = shape_based(TWICE, damping).compile(&body, &conditions(scheme, Set::best()));
+            Moving::new(compiled.stepper, start, scheme, threads)
+        };
+        for (scheme, damping) in SCHEMES.into_iter().flat_map(|scheme| [(scheme, 0.0), (scheme, 10.0)]) {
+            let make = |threads| kernel(&start, damping, scheme, threads);
+            let mut one_by_one = make(1);
             let taken = (0..10_000).take_while(|_| one_by_one.advance(1, around).is_ok()).count() as u64;
             assert!(taken > 40 && taken < 9_999, "{taken}");
-            let mut at_once = make();
-            let runaway = at_once.advance(10_000, around).expect_err("it falls");
-            assert_eq!(at_once.0.steps(), taken);
-            assert_eq!(at_once.stored(&start), one_by_one.stored(&start));
-            // Without a limit the same node is the first to exceed it.
-            let mut free = make();
+            // Without a limit some node is the first to exceed it.
+            let mut free = make(1);
             assert_eq!(free.advance(taken + 1, FREE), Ok(()));
             let speeds = free.stored(&start).0.velocity;
-            assert_eq!(
-                speeds.iter().position(|speed| speed.length() > limit),
-                Some(runaway.node),
-                "{scheme:?} {damping}"
-            );
+            let first = speeds.iter().position(|speed| speed.length() > LIMIT);
+            for (threads, steps) in [(1, 10_000), (2, 10_000), (3, 10_000), (3, 7)] {
+                let mut other = make(threads);
+                let lost = (0..10_000).find_map(|_| other.advance(steps, around).err());
+                let found = (lost.map(|lost| lost.node), other.0.steps());
+                assert_eq!(found, (first, taken), "{scheme:?} {damping} {threads} {steps}");
+                assert_eq!(other.stored(&start), one_by_one.stored(&start));
+            }
         }
+        let (mut state, memory) = start.clone();
+        state.position[7] = DVec3::NAN;
+        let mut kernel = kernel(&(state, memory), 0.0, SEMI, 1);
+        assert!(kernel.advance(5, FREE).is_err() && kernel.0.steps() == 0);
+        let (found, _) = kernel.stored(&start);
+        assert!(found.position[7].is_nan() && found.position[0] == start.0.position[0]);
     }
-    let (mut state, memory) = start;
-    state.position[7] = DVec3::NAN;
-    let mut kernel = general(&body, &(state, memory), TWICE, 0.0, SEMI, Set::best());
-    assert!(kernel.advance(5, FREE).is_err() && kernel.0.steps() == 0);
 }
 
 /// A node that contact makes too fast is found at the end of the step, which velocity Verlet computes in the next pass, by the limit
