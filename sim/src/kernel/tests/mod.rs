@@ -126,16 +126,19 @@ pub(super) fn start(body: &Body, seed: u64) -> State {
     State::new(position, velocity)
 }
 
+/// The places of the nodes of an element, relative to their mean.
+fn centred(nodes: &[u32], places: &[DVec3]) -> Vec<DVec3> {
+    let corners = nodes.iter().map(|&node| places[node as usize]);
+    let mean = corners.clone().sum::<DVec3>() / nodes.len() as f64;
+    corners.map(|corner| corner - mean).collect()
+}
+
 /// The rotations of the elements at a state, and in space the number of those that took the global solver: the memory with which the
 /// reference starts as well.
 fn rotations(body: &Body, state: &State) -> Vec<f64> {
     let mut memory = Vec::new();
     for nodes in body.elements.iter() {
-        let relative = |places: &[DVec3]| -> Vec<DVec3> {
-            let mean = nodes.iter().map(|&node| places[node as usize]).sum::<DVec3>() / nodes.len() as f64;
-            nodes.iter().map(|&node| places[node as usize] - mean).collect()
-        };
-        let a = moment(&relative(&body.rest), relative(&state.position));
+        let a = moment(&centred(nodes, &body.rest), centred(nodes, &state.position));
         match body.dimension {
             Dimension::Plane => memory.extend(planar::solve(a, DVec2::X).to_array()),
             Dimension::Space => memory.extend(davenport1968::optimum(a, DQuat::IDENTITY).to_array()),
@@ -260,6 +263,11 @@ pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
         Rotation::Optimum => (RotationReading::Robust, 1),
     };
     ShapeBased { damping, passes, rotation, ..ShapeBased::new(STIFFNESS) }
+}
+
+/// Springs that do not break.
+fn mass_spring(springs: &[[u32; 2]], damping: f64) -> MassSpring {
+    MassSpring { stiffness: STIFFNESS, damping, springs: springs.into(), breaks_at: None }
 }
 
 /// A simulation by the reference code.

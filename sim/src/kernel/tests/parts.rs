@@ -8,10 +8,8 @@ use crate::state::Status;
 fn meeting(kernel: Kernel, integrator: Integrator, damping: f64, contacts: Option<Contacts>, threads: usize) -> World {
     let bodies = [whole([4, 2, 3], 0.0, 31), pieces([3, 2, 2], &[4, 6, 8], 32)];
     let springs = bodies[1].topology().springs(Springs::All);
-    let models: [Box<dyn ElasticModel>; 2] = [
-        Box::new(shape_based(Rotation::Optimum, damping)),
-        Box::new(MassSpring { stiffness: STIFFNESS, damping: 0.0, springs: springs.into(), breaks_at: None }),
-    ];
+    let models: [Box<dyn ElasticModel>; 2] =
+        [Box::new(shape_based(Rotation::Optimum, damping)), Box::new(mass_spring(&springs, 0.0))];
     let mut all = State::default();
     let starts = [0, 1].map(|at| start(&bodies[at], 33));
     let [end, begin] = [crate::hull::bounds(&starts[0].position).1, crate::hull::bounds(&starts[1].position).0];

@@ -5,11 +5,6 @@ use super::*;
 /// Enough steps for a wrong term to exceed round-off, and for copies of the state in between.
 const FEW: u64 = 200;
 
-/// A model of springs.
-fn model(springs: &[[u32; 2]], damping: f64) -> MassSpring {
-    MassSpring { stiffness: STIFFNESS, damping, springs: springs.into(), breaks_at: None }
-}
-
 /// The kernel for families of springs, if there are families.
 fn by_families(model: &MassSpring, body: &Body, conditions: &Conditions) -> Option<Box<dyn Stepper>> {
     let stencil = Stencil::new(&model.springs, [model.stiffness, model.damping], body, conditions)?;
@@ -18,7 +13,7 @@ fn by_families(model: &MassSpring, body: &Body, conditions: &Conditions) -> Opti
 
 /// The kernel for families of springs, if there are families, and the general one.
 fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]], damping: f64, families: bool) {
-    let (start, model) = ((start(body, 6), Vec::new()), model(springs, damping));
+    let (start, model) = ((start(body, 6), Vec::new()), mass_spring(springs, damping));
     assert_eq!(by_families(&model, body, &conditions(SEMI, Set::best())).is_some(), families, "{springs:?}");
     for scheme in SCHEMES {
         let case = Case { body, start: &start, model: &model, scheme, steps: FEW };
@@ -61,7 +56,7 @@ fn springs_step_like_the_reference() {
 fn a_spring_between_coincident_nodes_does_nothing() {
     let body = whole([4, 1, 1], 0.0, 19);
     let springs = body.topology().springs(Springs::Edges);
-    let model = model(&springs, 10.0);
+    let model = mass_spring(&springs, 10.0);
     let start = (State::at_rest(vec![DVec3::ONE; body.len()]), Vec::new());
     for set in Set::all() {
         let free = conditions(SEMI, set);
@@ -79,7 +74,7 @@ fn a_spring_between_coincident_nodes_does_nothing() {
 fn springs_in_several_slabs_step_like_the_reference() {
     let body = whole([19, 19, 23], 0.1, 20);
     let springs = body.topology().springs(Springs::EdgesOneDiagonal);
-    let (start, model) = ((start(&body, 7), Vec::new()), model(&springs, 10.0));
+    let (start, model) = ((start(&body, 7), Vec::new()), mass_spring(&springs, 10.0));
     let case = Case { body: &body, start: &start, model: &model, scheme: SEMI, steps: 50 };
     case.compare("slabs", Set::all().skip(1), &[1, 2, 3], |conditions| {
         by_families(&model, &body, conditions).expect("a lattice")

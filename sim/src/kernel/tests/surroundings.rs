@@ -122,17 +122,11 @@ fn what_holds_and_moves_is_that_of_the_reference() {
     let listed: Vec<[u32; 2]> = (0..60).map(|_| [random.below(30) as u32, 30 + random.below(30) as u32]).collect();
     let named = lattice.topology().springs(Springs::EdgesFaceDiagonals);
     for damping in [0.0, 10.0] {
-        let spring = |springs: &[[u32; 2]]| MassSpring {
-            stiffness: STIFFNESS,
-            damping,
-            springs: springs.into(),
-            breaks_at: None,
-        };
         let models: [(&Arc<Body>, Box<dyn ElasticModel>); 4] = [
             (&lattice, Box::new(shape_based(TWICE, damping))),
             (&any, Box::new(shape_based(Rotation::Optimum, damping))),
-            (&lattice, Box::new(spring(&named))),
-            (&lattice, Box::new(spring(&listed))),
+            (&lattice, Box::new(mass_spring(&named, damping))),
+            (&lattice, Box::new(mass_spring(&listed, damping))),
         ];
         for (body, model) in models {
             let all = [Integrator::SemiImplicitEuler, Integrator::ExplicitEuler, Integrator::VelocityVerlet];
