@@ -28,12 +28,11 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
-use super::continuum::of_material;
+use super::continuum::{cofactors, dot, of_material};
 use super::{ElasticModel, ForceModel, Misfit, Properties, Setting, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::fill;
-use crate::kernel::rotation::{cross, dot};
 use crate::lanes::{Lanes, each};
 use crate::law::{ByLaw, Corners, Element, Law, Rigid, off};
 use crate::material::{Damping, Material};
@@ -198,10 +197,10 @@ impl Law for Metric {
     fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], of_corner: &mut [L]) {
         let (part, mut whole) = (L::splat(1.0 / rest.count() as f64), L::splat(0.0));
         for corner in 0..rest.count() {
-            let [a, b, c] = edges(rest, corner);
+            let edges = edges(rest, corner);
             // The inverse of the matrix of edges has these rows, over the volume.
-            let rows = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
-            let volume = dot(&rows[0], &a);
+            let rows = cofactors(&edges);
+            let volume = dot(&rows[0], &edges[0]);
             let inverse = L::splat(1.0) / (volume * volume);
             let numbers = &mut of_corner[7 * corner..][..7];
             let squares = metric(&rows);

@@ -17,6 +17,7 @@
 //!
 //! The model is a sum of two laws in one: its elements are the springs, which have two nodes, and those of the body.
 
+use super::continuum::{Map, cofactors, dot};
 #[cfg(feature = "scene")]
 use super::mass_spring;
 use super::mass_spring::{MassSpring, natural_length};
@@ -26,7 +27,6 @@ use super::{
 use crate::body::Body;
 use crate::element::Dimension;
 use crate::fill;
-use crate::kernel::rotation::{Matrix, cross, dot};
 use crate::lanes::each;
 use crate::lists::IndexLists;
 use crate::material;
@@ -138,7 +138,7 @@ impl Sum {
 
     /// `F` of elements, column by column.
     #[inline(always)]
-    fn map<L: Lanes>(&self, element: &Element<'_, L>) -> Matrix<L> {
+    fn map<L: Lanes>(&self, element: &Element<'_, L>) -> Map<L, 3> {
         let (zero, (first, _)) = (L::splat(0.0), element.corner(0));
         let mut map = [[zero; 3]; 3];
         for corner in 1..element.corners() {
@@ -153,21 +153,13 @@ impl Sum {
     }
 }
 
-/// The cofactors of a matrix and its determinant less 1.
-#[inline(always)]
-fn cofactors<L: Lanes>([x, y, z]: &Matrix<L>) -> (Matrix<L>, L) {
-    let (cofactors, one) = ([cross(y, z), cross(z, x), cross(x, y)], L::splat(1.0));
-    let of = &cofactors[0];
-    (cofactors, dot(x, of) - one)
-}
-
 impl Law for Sum {
     /// `k L` of a spring (N).
     const OF_ELEMENT: usize = 1;
     /// `b = M⁻¹ R0` of a corner of an element (1/m), so that `F = Σ r bᵀ`.
     const OF_CORNER: usize = 3;
     /// First the force on the first node of a spring; or `κ (det F − 1)` times the cofactors of `F`.
-    type Whole<L: Lanes> = Matrix<L>;
+    type Whole<L: Lanes> = Map<L, 3>;
 
     fn elements(&self, body: &Body) -> Option<IndexLists> {
         let with_volume = body.elements.iter().zip(volumes_at_rest(body)).filter(|&(_, volume)| volume > 0.0);
@@ -211,7 +203,7 @@ impl Law for Sum {
         // In the plane R0 has no third coordinate, and the third column counts nowhere.
         let zz = if self.is_plane { one } else { zz };
         let moment = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        let inverse = [cross(&moment[1], &moment[2]), cross(&moment[2], &moment[0]), cross(&moment[0], &moment[1])];
+        let inverse = cofactors(&moment);
         let determinant = dot(&moment[0], &inverse[0]);
         for corner in 0..rest.count() {
             let r = each!(3, axis => of_corner[3 * corner + axis]);
@@ -220,17 +212,18 @@ impl Law for Sum {
     }
 
     #[inline(always)]
-    fn whole<L: Lanes>(&self, element: &Element<'_, L>) -> Matrix<L> {
+    fn whole<L: Lanes>(&self, element: &Element<'_, L>) -> Map<L, 3> {
         if element.corners() == 2 {
             return [self.springs.force::<L, true>(element), [L::splat(0.0); 3], [L::splat(0.0); 3]];
         }
-        let (cofactors, excess) = cofactors(&self.map(element));
-        let pressure = L::splat(self.bulk) * excess;
+        let map = self.map(element);
+        let cofactors = cofactors(&map);
+        let pressure = L::splat(self.bulk) * (dot(&map[0], &cofactors[0]) - L::splat(1.0));
         each!(3, column => each!(3, row => pressure * cofactors[column][row]))
     }
 
     #[inline(always)]
-    fn force<L: Lanes>(&self, element: &Element<'_, L>, corner: usize, whole: &Matrix<L>) -> [L; 3] {
+    fn force<L: Lanes>(&self, element: &Element<'_, L>, corner: usize, whole: &Map<L, 3>) -> [L; 3] {
         let [x, y, z] = whole;
         if element.corners() == 2 {
             return if corner == 0 { *x } else { each!(3, axis => -x[axis]) };
@@ -244,7 +237,8 @@ impl Law for Sum {
         let energy = if element.corners() == 2 {
             self.springs.energy(element, rest)
         } else {
-            let (_, excess) = cofactors(&self.map(element));
+            let map = self.map(element);
+            let excess = dot(&map[0], &cofactors(&map)[0]) - L::splat(1.0);
             L::splat(0.5 * self.bulk) * excess * excess
         };
         shares.fill(energy * L::splat(1.0 / element.corners() as f64));

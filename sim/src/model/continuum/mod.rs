@@ -19,7 +19,7 @@ mod map;
 mod modes;
 mod nearest;
 
-pub(in crate::model) use map::{Map, cofactors, dot};
+pub(in crate::model) use map::{Map, cofactors, dot, product};
 pub(in crate::model) use nearest::with_nearest;
 
 use super::{ByLaw, ElasticModel, ForceModel, Lanes, Misfit, Properties, Setting, Vectorised};

@@ -8,7 +8,7 @@
 //!
 //! All roots are real and `½ (3 + I₁) ≥ √(3 I₁) ≥ s`, so Halley's method falls from there to the largest without a test.
 
-use super::map::{Map, cofactors, dot};
+use super::map::{Map, cofactors, dot, product};
 use crate::kernel::rotation::in_plane;
 use crate::lanes::{Lanes, MOST, each};
 use crate::rotation::davenport1968;
@@ -71,10 +71,8 @@ pub(in crate::model) fn with_nearest<L: Lanes, const D: usize>(f: &Map<L, D>, [a
     let (xx, yy, zz) = (xx.neg_mul_add(weight, own), yy.neg_mul_add(weight, own), zz.neg_mul_add(weight, own));
     let (xy, xz, yz) = (-(xy * weight), -(xz * weight), -(yz * weight));
     let mixed = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut whole = each!(3, column => each!(3, row => {
-        let own = f[2][row].mul_add(mixed[column][2], f[1][row].mul_add(mixed[column][1], f[0][row] * mixed[column][0]));
-        adjugate.mul_add(cofactors[column][row], own)
-    }));
+    let own = product(&f, &mixed);
+    let mut whole = each!(3, column => each!(3, row => adjugate.mul_add(cofactors[column][row], own[column][row])));
     if sound != L::ALL {
         (whole, excess) = globally(&f, [a, b, c], (whole, excess), L::ALL & !sound);
     }

@@ -14,6 +14,7 @@ use crate::kernel::shapes::{Shapes, square};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
 use crate::lanes::{Lanes, MOST, each};
 use crate::law::{Breaking, ByLaw, Corners, Element, Law, Rigid, Strained};
+use crate::model::continuum::{cofactors, dot, product};
 use glam::DMat3;
 use std::sync::Arc;
 
@@ -500,10 +501,8 @@ impl Common {
             let zero = L::splat(0.0);
             return (map, [[zero; 3]; 3], zero);
         }
-        let [x, y, z] = &map;
-        let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
-        let volume = x[2].mul_add(cofactors[0][2], x[1].mul_add(cofactors[0][1], x[0] * cofactors[0][0]));
-        let excess = volume - L::splat(1.0);
+        let cofactors = cofactors(&map);
+        let excess = dot(&map[0], &cofactors[0]) - L::splat(1.0);
         let pressure = weight * excess;
         let force = product(&each!(3, column => each!(3, row => cofactors[column][row] * pressure)), &inverse);
         (map, force, L::splat(0.5) * pressure * excess)
@@ -520,14 +519,6 @@ impl Common {
             *share = half_k.mul_add(bending.mul_add(square(off), affine), each_volume);
         }
     }
-}
-
-/// The product of two matrices.
-#[inline(always)]
-fn product<L: Lanes>(a: &Matrix<L>, b: &Matrix<L>) -> Matrix<L> {
-    each!(3, column => each!(3, row => {
-        a[2][row].mul_add(b[column][2], a[1][row].mul_add(b[column][1], a[0][row] * b[column][0]))
-    }))
 }
 
 /// `R0` of each corner (m), corner by corner.
