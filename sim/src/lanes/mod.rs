@@ -10,8 +10,9 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// An array of two, three, four or eight values, each by an expression of its index. `array::map` is not used because
-/// closures are separate functions, compiled without the vector set and not always inlined.
+/// An array of two, three, four or eight values, each by an expression of its index, and so an unrolled loop: if the compiler keeps a
+/// loop, it keeps its vectors in memory. `array::map` is not used because closures are separate functions, compiled without the vector
+/// set and not always inlined.
 macro_rules! each {
     (2, $at:ident => $value:expr) => { each!([0, 1], $at => $value) };
     (3, $at:ident => $value:expr) => { each!([0, 1, 2], $at => $value) };
@@ -22,14 +23,6 @@ macro_rules! each {
     };
 }
 pub(crate) use each;
-
-/// An unrolled loop over 0, 1, 2: if the compiler keeps a loop, it keeps its vectors in memory.
-macro_rules! thrice {
-    ($at:ident => $body:expr) => {{
-        each!(3, $at => $body);
-    }};
-}
-pub(crate) use thrice;
 
 /// The largest number of lanes of any set. Arrays padded to a multiple of it suit all sets.
 pub(crate) const MOST: usize = 8;

@@ -6,7 +6,7 @@ use crate::kernel::general::{NONE as NOBODY, first_of};
 use crate::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
 use crate::kernel::rotation::{Moments, Solver, choose, cross, matrix, turn, turned_back};
 use crate::kernel::update::{NodeUpdate, NodeVector};
-use crate::lanes::{Lanes, MOST, each, thrice};
+use crate::lanes::{Lanes, MOST, each};
 use crate::law::Turning;
 
 /// The numbers of a square of four nodes along x and z: their sum, their differences along x and z, the sum of their velocities, and the
@@ -95,7 +95,7 @@ impl Sweep<'_> {
                     let first = slot(at, 3);
                     // Along x, and then along z.
                     let [mut to_low, mut to_high] = each!(2, _side => [zero; 3]);
-                    thrice!(axis => {
+                    each!(3, axis => {
                         let (high, low) = pull[axis];
                         let here = high.shift_in(pull_before[axis]) + low;
                         let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
@@ -108,7 +108,7 @@ impl Sweep<'_> {
                         to_low = self.turned(plane, at, &all, to_low);
                         to_high = self.turned(plane + 1, at, &all, to_high);
                     }
-                    thrice!(axis => {
+                    each!(3, axis => {
                         let force = if is_shared {
                             to_low[axis].store(lowest.add(first + axis * MOST));
                             zero
@@ -175,13 +175,13 @@ impl Sweep<'_> {
         unsafe {
             let to = ring.add(first);
             for group in 0..PARTS {
-                thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+                each!(3, axis => values[group][axis].store(to.add((3 * group + axis) * part)));
             }
             if place < MOST {
                 let (first, _) = self.ring_place::<L>(place + self.ring, 3 * PARTS);
                 let to = ring.add(first);
                 for group in 0..PARTS {
-                    thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+                    each!(3, axis => values[group][axis].store(to.add((3 * group + axis) * part)));
                 }
             }
         }
@@ -226,12 +226,12 @@ impl Sweep<'_> {
                         let live = L::load(self.live.add(at));
                         lanes[at % CHUNK][0] = L::bits(L::splat(0.0).lt(live)) as u8;
                         let mean = self.mean::<L, DAMPING>(&ends, &sum, live);
-                        thrice!(axis => mean[axis].store(work.add((MEAN + axis) * CHUNK)));
+                        each!(3, axis => mean[axis].store(work.add((MEAN + axis) * CHUNK)));
                     }
                     here = self.next(here, L::WIDTH);
                     let last = self.turns::<L>(plane, at, pass == 0);
                     let b = turned_back(&self.along_sides(edges), &matrix(last, scale));
-                    thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
+                    each!(3, row => each!(3, column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
                 }
                 for at in (first..end).step_by(L::WIDTH) {
                     let work = self.work.add(at % CHUNK);
@@ -379,7 +379,7 @@ impl Sweep<'_> {
         let mut edges = [[L::splat(0.0); 3]; 3];
         let mut sum = [L::splat(0.0); 3];
         // SAFETY: all squares have these numbers.
-        thrice!(axis => unsafe {
+        each!(3, axis => unsafe {
             let [near, far] = ends.get(SUM + axis);
             edges[0][axis] = ends.sum(ALONG_X + axis);
             edges[1][axis] = far - near;
@@ -505,7 +505,7 @@ impl Sweep<'_> {
             let (distance, line) = (L::distance(before % MOST), MOST * parts);
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
-            thrice!(axis => {
+            each!(3, axis => {
                 let sum = L::load_beyond(from.add(axis * part), distance, line) + (mean[axis] - v[axis]);
                 let along = L::load_beyond(from.add((3 + axis) * part), distance, line) + u[axis];
                 pull[axis] = (sum + along, sum - along);
@@ -544,7 +544,7 @@ impl Sweep<'_> {
                 let acceleration = if stage.loads_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = NodeVector { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
                 let mut total = force(at);
-                thrice!(axis => {
+                each!(3, axis => {
                     total[axis] = nodes.position[axis].neg_mul_add(stiffness, total[axis]);
                     if DAMPING != NONE {
                         total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
@@ -558,12 +558,12 @@ impl Sweep<'_> {
                     return Some(first);
                 }
                 near |= update.near(&nodes);
-                thrice!(axis => {
+                each!(3, axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
                 });
                 if stage.stores_acceleration() {
-                    thrice!(axis => nodes.acceleration[axis].store(to.add((ACCELERATION + axis) * MOST)));
+                    each!(3, axis => nodes.acceleration[axis].store(to.add((ACCELERATION + axis) * MOST)));
                 }
             }
             if near == 0 {
@@ -574,7 +574,7 @@ impl Sweep<'_> {
                 let acceleration = if stage.keeps_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = NodeVector { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
                 update.meet(&mut nodes, inverse_mass(to), |lane| plane * self.grid.layer() + at + lane);
-                thrice!(axis => {
+                each!(3, axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
                 });
