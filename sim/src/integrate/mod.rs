@@ -5,18 +5,16 @@
 mod backward_euler;
 pub(crate) mod composition;
 mod dormand_prince;
-mod explicit_euler;
+mod euler;
 mod runge_kutta;
-mod semi_implicit_euler;
 mod velocity_verlet;
 
 pub use self::composition::{ByComposition, Composition};
 
 use self::backward_euler::BackwardEuler;
 use self::dormand_prince::DormandPrince;
-use self::explicit_euler::ExplicitEuler;
+use self::euler::Euler;
 use self::runge_kutta::RungeKutta;
-use self::semi_implicit_euler::SemiImplicitEuler;
 use self::velocity_verlet::VelocityVerlet;
 use super::body::Body;
 use super::contact::Timing;
@@ -343,8 +341,7 @@ impl Integrator {
     /// The method. `tolerance` is for one with steps of its own.
     pub(super) fn method(self, tolerance: f64, scales: Scales) -> Box<dyn Method> {
         match self {
-            Self::SemiImplicitEuler => Box::<SemiImplicitEuler>::default(),
-            Self::ExplicitEuler => Box::<ExplicitEuler>::default(),
+            Self::SemiImplicitEuler | Self::ExplicitEuler => Box::new(Euler::new(self == Self::ExplicitEuler)),
             Self::VelocityVerlet => Box::<VelocityVerlet>::default(),
             Self::Pefrl => Box::new(ByComposition::new(composition::PEFRL)),
             Self::RungeKutta => Box::<RungeKutta>::default(),
