@@ -1,57 +1,33 @@
 //! Bodies in balance with loads, and the forces of bodies that do not move.
 
 use glam::DVec3;
-use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch};
+use localshape::sim::model::ElasticModel;
 use localshape::sim::{
-    Body, Course, Crew, Equilibrium, Grip, Load, Loading, Motion, Nodes, State, Surroundings, equilibrium,
+    Body, Course, Crew, Equilibrium, Grip, Integrator, Load, Loading, Motion, State, Stepping, Surroundings, World,
+    equilibrium,
 };
 use std::sync::Arc;
 
-/// The forces of a model on a body that does not move, with the memory that goes with them.
-pub(super) struct Forces {
-    forces: Box<dyn ForceModel>,
-    memory: Vec<f64>,
-    next: Vec<f64>,
-    scratch: Scratch,
-    still: Vec<DVec3>,
+/// A world of one body at rest, for its forces and its energy.
+pub(super) fn still(body: &Arc<Body>, model: &dyn ElasticModel, position: Vec<DVec3>) -> World {
+    let stepping = Stepping::new(Integrator::default(), 1.0);
+    World::new(body, State::at_rest(position), model, Surroundings::default(), stepping)
 }
 
-impl Forces {
-    pub(super) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &[DVec3]) -> Self {
-        let memory = model.start(body, start);
-        let (next, still) = (memory.clone(), vec![DVec3::ZERO; body.len()]);
-        Self { forces: model.prepare(body), memory, next, scratch: Scratch::default(), still }
-    }
-
-    /// The forces on nodes at these places (N).
-    fn at(&mut self, position: &[DVec3]) -> Vec<DVec3> {
-        let mut forces = vec![DVec3::ZERO; position.len()];
-        let at = Nodes { position, velocity: &self.still };
-        self.forces.add_forces(at, &self.memory, &mut self.next, &mut self.scratch, &mut forces);
-        forces
-    }
-
-    /// The elastic energy (J), of models that have one.
-    pub(super) fn energy(&mut self, position: &[DVec3]) -> Option<f64> {
-        self.at(position);
-        let Report { energy, .. } =
-            self.forces.report(Nodes { position, velocity: &self.still }, &self.next, &mut |_, _, _| ());
-        energy
-    }
-
-    /// The forces of small displacements over their amplitude (N/m): the part that is linear in them. Of two differences, so that what is
-    /// cubic cancels, too.
-    pub(super) fn linear(&mut self, body: &Body, shape: &[DVec3], amplitude: f64) -> Vec<DVec3> {
-        let mut by = |amplitude: f64| {
-            let moved: Vec<_> = body.rest().iter().zip(shape).map(|(&rest, &shape)| rest + shape * amplitude).collect();
-            self.at(&moved)
-        };
-        let [near, far] = [amplitude, 2.0 * amplitude].map(|amplitude| {
-            let there_and_back = by(amplitude).into_iter().zip(by(-amplitude));
-            there_and_back.map(|(there, back)| (there - back) / (2.0 * amplitude)).collect::<Vec<_>>()
-        });
-        near.into_iter().zip(far).map(|(near, far)| (near * 4.0 - far) / 3.0).collect()
-    }
+/// The forces of small displacements over their amplitude (N/m): the part that is linear in them. Of two differences, so that what is
+/// cubic cancels, too.
+pub(super) fn linear_forces(world: &mut World, body: &Body, shape: &[DVec3], amplitude: f64) -> Vec<DVec3> {
+    let mut by = |amplitude: f64| {
+        let mut state = world.state().clone();
+        state.position = body.rest().iter().zip(shape).map(|(&rest, &shape)| rest + shape * amplitude).collect();
+        world.set_state(state);
+        world.forces()
+    };
+    let [near, far] = [amplitude, 2.0 * amplitude].map(|amplitude| {
+        let there_and_back = by(amplitude).into_iter().zip(by(-amplitude));
+        there_and_back.map(|(there, back)| (there - back) / (2.0 * amplitude)).collect::<Vec<_>>()
+    });
+    near.into_iter().zip(far).map(|(near, far)| (near * 4.0 - far) / 3.0).collect()
 }
 
 /// Nodes that do not move.

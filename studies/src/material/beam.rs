@@ -1,7 +1,7 @@
 //! Cantilevers of few cells: how much stiffer than Timoshenko's beam each model is, also if it is nearly incompressible, and how near to the
 //! elastica under large loads; free modes and waves of the shape model beside their closed forms.
 
-use super::balance::Forces;
+use super::balance::{linear_forces, still};
 use super::bar::Bar;
 use super::theory::{elastica, timoshenko};
 use super::{Elements, MENDED, MODELS, Model, decimals};
@@ -170,56 +170,44 @@ fn waves() -> Vec<Wave> {
 
 /// The greatest relative error of the modes of a free column.
 fn modes(model: &Model, cells: u32) -> f64 {
-    let (forces, bar) = forces(model, [1, 1, cells]);
-    let bottom = -0.5 * bar.length;
-    let error = |mode: u32| {
-        let phase = f64::from(mode) * PI / f64::from(cells + 1);
-        let sine = libm::sin(0.5 * phase);
-        let shape = |rest: &DVec3| DVec3::Z * libm::cos(phase * (libm::round((rest.z - bottom) / SIDE) + 0.5));
-        (shape_of(&bar, shape), 2.0 * STIFFNESS * sine * sine)
-    };
-    off(forces, &bar, (1..=cells).map(error), 1e-3 * SIDE, |_| true)
+    let bottom = -0.5 * (f64::from(cells) * SIDE);
+    let phases = (1..=cells).map(|mode| f64::from(mode) * PI / f64::from(cells + 1));
+    let shape = |phase: f64, at: DVec3| DVec3::Z * libm::cos(phase * (libm::round((at.z - bottom) / SIDE) + 0.5));
+    off(model, [1, 1, cells], 2.0, phases, shape, |_| true)
 }
 
 /// The greatest relative error of plane waves along z.
 fn plane_waves(model: &Model, along: DVec3, share: f64) -> f64 {
-    let (forces, bar) = forces(model, [2, 2, 9]);
-    let wave = |phase: f64| {
-        let sine = libm::sin(0.5 * phase);
-        (shape_of(&bar, |rest| along * libm::cos(phase * (rest.z / SIDE) + 0.3)), share * STIFFNESS * sine * sine)
-    };
-    let is_inside = |rest: &DVec3| rest.z.abs() < 0.5 * bar.length - 0.5 * SIDE && rest.x.abs() < 0.5 * SIDE;
-    let is_inside = |rest: &DVec3| is_inside(rest) && (rest.y - SIDE).abs() < 0.5 * SIDE;
-    off(forces, &bar, [0.1, 1.0, 2.0, PI].into_iter().map(wave), 1e-3 * SIDE, is_inside)
+    let shape = |phase: f64, at: DVec3| along * libm::cos(phase * (at.z / SIDE) + 0.3);
+    let is_inside = |at: DVec3| at.z.abs() < 4.0 * SIDE && at.x.abs() < 0.5 * SIDE && (at.y - SIDE).abs() < 0.5 * SIDE;
+    off(model, [2, 2, 9], share, [0.1, 1.0, 2.0, PI].into_iter(), shape, is_inside)
 }
 
 /// `k = E a/2` (N/m).
 const STIFFNESS: f64 = 0.5 * MATERIAL.young * SIDE;
 
-fn forces(model: &Model, cells: [u32; 3]) -> (Forces, Bar) {
-    let bar = Bar::new(Elements::Cells, cells, SIDE, 1.0);
-    let made = model.on(&bar.body, MATERIAL, SIDE).expect("a lattice of cubes");
-    (Forces::new(&bar.body, made.as_ref(), bar.body.rest()), bar)
-}
-
-fn shape_of(bar: &Bar, shape: impl Fn(&DVec3) -> DVec3) -> Vec<DVec3> {
-    bar.body.rest().iter().map(shape).collect()
-}
-
-/// The greatest deviation of the forces of shapes from `−m ω²` times them, with `m ω²` (N/m) for each, relative to it.
+/// The greatest deviation of the forces of shapes, which follow from phases and places, from `−m ω²` times them, relative to it. `m ω²` is
+/// a share of `k sin²(φ/2)`.
 fn off(
-    mut forces: Forces,
-    bar: &Bar,
-    shapes: impl Iterator<Item = (Vec<DVec3>, f64)>,
-    amplitude: f64,
-    counts: impl Fn(&DVec3) -> bool,
+    model: &Model,
+    cells: [u32; 3],
+    share: f64,
+    phases: impl Iterator<Item = f64>,
+    shape: impl Fn(f64, DVec3) -> DVec3,
+    counts: impl Fn(DVec3) -> bool,
 ) -> f64 {
-    let of_shape = |(shape, expected): (Vec<DVec3>, f64)| {
-        let found = forces.linear(&bar.body, &shape, amplitude);
-        let nodes = found.iter().zip(&shape).zip(bar.body.rest()).filter(|(_, rest)| counts(rest));
+    let body = Elements::Cells.block(&cells, SIDE, (0.0, 1), 1.0);
+    let made = model.on(&body, MATERIAL, SIDE).expect("a lattice of cubes");
+    let mut world = still(&body, made.as_ref(), body.rest().to_vec());
+    let of_phase = |phase: f64| {
+        let sine = libm::sin(0.5 * phase);
+        let expected = share * STIFFNESS * sine * sine;
+        let shape: Vec<_> = body.rest().iter().map(|&at| shape(phase, at)).collect();
+        let found = linear_forces(&mut world, &body, &shape, 1e-3 * SIDE);
+        let nodes = found.iter().zip(&shape).zip(body.rest()).filter(|(_, at)| counts(**at));
         nodes.map(|((&force, &shape), _)| (force + shape * expected).length() / expected).fold(0.0, f64::max)
     };
-    shapes.map(of_shape).fold(0.0, f64::max)
+    phases.map(of_phase).fold(0.0, f64::max)
 }
 
 /// A row of a table: names, then numbers with some decimals.
