@@ -76,15 +76,16 @@ impl Alike {
         keys
     }
 
-    /// A model for a body, with `D` (N s/m). `more` are further keys. `None` if the model does not take the elements of the body.
+    /// A model for a body, with `D` (N s/m) and perhaps a further key. `None` if the model does not take the elements of the body.
     pub(crate) fn model(
         &self,
         body: &Body,
         kind: &str,
         damping: f64,
-        more: impl IntoIterator<Item = (String, Value)>,
+        more: Option<[&str; 2]>,
     ) -> Option<Arc<dyn ElasticModel>> {
-        let keys: Map<_, _> = self.keys(kind, ("damping", damping)).into_iter().chain(more).collect();
+        let mut keys = self.keys(kind, ("damping", damping));
+        keys.extend(more.map(|[key, value]| (key.to_owned(), json!(value))));
         let parameters: ModelParameters = serde_json::from_value(keys.into()).expect("the parameters of a model");
         parameters.resolve(body, None).ok()
     }

@@ -49,7 +49,7 @@ fn half_space(cells: u32) -> (Arc<Body>, f64) {
 fn pressed(cells: u32) -> Vec<Measured> {
     let (body, small) = half_space(cells);
     let material = Material { young: YOUNG, poisson: 0.0 };
-    let model = Alike::material(material, 0.5 * small).model(&body, "linear", 0.0, []).expect("bricks");
+    let model = Alike::material(material, 0.5 * small).model(&body, "linear", 0.0, None).expect("bricks");
     // Nodes have eight times the mass with which waves would pass a brick in the time 1, so that this is half of the largest stable step.
     let step = 1.0;
     let thin = 0.025 * small;

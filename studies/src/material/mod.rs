@@ -28,7 +28,6 @@ use localshape::scene::Cells;
 use localshape::sim::model::{ElasticModel, shape_based};
 use localshape::sim::{Body, Material};
 use localshape::{BodyBuilder, Lattice, Limits, Scene};
-use serde_json::json;
 use std::sync::Arc;
 
 /// A model by name.
@@ -109,8 +108,7 @@ impl Model {
 
     /// The model of a material on a body of cells with a side (m). `None` for a model that does not take this body.
     pub(crate) fn on(&self, body: &Body, material: Material, side: f64) -> Option<Arc<dyn ElasticModel>> {
-        let more = self.more.map(|[key, value]| (key.to_owned(), json!(value)));
-        Alike::material(material, 0.5 * side).model(body, self.kind, 0.0, more)
+        Alike::material(material, 0.5 * side).model(body, self.kind, 0.0, self.more)
     }
 }
 

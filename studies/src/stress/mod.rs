@@ -9,8 +9,7 @@ mod trials;
 use crate::models::Alike;
 use crate::study::{Findings, Study, Watch, each};
 use glam::DVec3;
-use localshape::sim::{Integrator, Kernel, State, Status, Stepping, World};
-use serde_json::{Map, Value, json};
+use localshape::sim::{Integrator, State, Status, Stepping, World};
 use trials::{Trial, trials};
 
 /// The study.
@@ -41,27 +40,26 @@ impl Study for Stress {
 pub(crate) struct NamedModel {
     pub(crate) name: String,
     kind: String,
-    /// Keys besides its stiffness and its damping.
-    keys: Map<String, Value>,
+    /// A key besides its stiffness and its damping, and its value.
+    more: Option<[&'static str; 2]>,
 }
 
 impl NamedModel {
-    fn new(name: &str, kind: &str, keys: &[(&str, &str)]) -> Self {
-        let keys = keys.iter().map(|&(key, value)| (key.to_owned(), json!(value))).collect();
-        Self { name: name.to_owned(), kind: kind.to_owned(), keys }
+    fn new(name: &str, kind: &str, more: Option<[&'static str; 2]>) -> Self {
+        Self { name: name.to_owned(), kind: kind.to_owned(), more }
     }
 
     /// The shape model, whose promises are tested, and models by their names; without any, those of the paper.
     pub(crate) fn compared(kinds: &[String]) -> Vec<Self> {
-        let shape = Self::new("shape-based", "shape-based", &[]);
+        let shape = Self::new("shape-based", "shape-based", None);
         if !kinds.is_empty() {
-            return [shape].into_iter().chain(kinds.iter().map(|kind| Self::new(kind, kind, &[]))).collect();
+            return [shape].into_iter().chain(kinds.iter().map(|kind| Self::new(kind, kind, None))).collect();
         }
-        let springs = |name: &str, topology: &str| Self::new(name, "mass-spring", &[("springs", topology)]);
+        let springs = |name: &str, topology| Self::new(name, "mass-spring", Some(["springs", topology]));
         vec![
             shape,
             // Two passes, as the paper advises.
-            Self::new("shape-based, Eq. (15) twice", "shape-based", &[("rotation", "arctangent")]),
+            Self::new("shape-based, Eq. (15) twice", "shape-based", Some(["rotation", "arctangent"])),
             springs("springs, edges and face diagonals", "edges+face-diagonals"),
             springs("springs, all pairs of an element", "all"),
         ]
@@ -180,15 +178,9 @@ impl Trial {
     /// `None` for a model that does not take the body.
     fn world(&self, model: &NamedModel, integrator: Integrator, start: State) -> Option<World> {
         let alike = Alike::on_body(self.stiffness, &self.body);
-        let model = alike.model(&self.body, &model.kind, self.damping, model.keys.clone())?;
-        let Self { body, around, step, .. } = self;
-        let stepping = Stepping {
-            integrator,
-            step: *step,
-            tolerance: Integrator::TOLERANCE,
-            kernel: Kernel::of(model.as_ref(), integrator),
-        };
-        Some(World::new(body, start, model.as_ref(), around.clone(), stepping))
+        let model = alike.model(&self.body, &model.kind, self.damping, model.more)?;
+        let stepping = Stepping::new(integrator, self.step);
+        Some(World::new(&self.body, start, model.as_ref(), self.around.clone(), stepping))
     }
 
     fn outcome(&self, model: &NamedModel) -> Option<Outcome> {
