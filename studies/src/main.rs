@@ -35,7 +35,7 @@ use localshape::{Limits, Scene};
 use material::{Beam, Cook, Patch, Time};
 use ratio::Ratio;
 use rotation::Rotation;
-use stability::{Protocol, Stability};
+use stability::Stability;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use stress::Stress;
@@ -198,10 +198,8 @@ impl Name {
                 Task::new("work-precision", WorkPrecision { effort, subjects }, 1, arguments)
             }
             Self::Stability { of, threads } => {
-                let study = Stability {
-                    protocol: if of.full { Protocol::full() } else { Protocol::usual() },
-                    scene: of.load()?.unwrap_or_else(|| stability::usual(&of.model)),
-                };
+                let scene = of.load()?.unwrap_or_else(|| stability::usual(&of.model));
+                let study = if of.full { Stability::full(scene) } else { Stability::usual(scene) };
                 if study.work() == 0 {
                     return Err(Failure::usage(format!(
                         "all runs of “{}” choose their own steps, so there is nothing to map; give one another integrator",

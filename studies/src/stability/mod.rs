@@ -9,37 +9,19 @@ mod page;
 mod text;
 
 use crate::page::Outcome;
-use crate::study::{Findings, Study, Watch, built_in};
+use crate::study::{Findings, Study, Watch, built_in, each};
 use localshape::Scene;
 use localshape::scene::{Run, description};
 use localshape::sim::model::{ElasticModel, ModelParameters};
 use localshape::sim::stability::{Restraint, Stability as Limit};
 use localshape::sim::{Diagnostic, Status};
-use rayon::prelude::*;
 use std::sync::Arc;
 use text::short;
 
 /// The study.
+#[derive(Clone, Debug)]
 pub(crate) struct Stability {
-    pub(crate) protocol: Protocol,
     pub(crate) scene: Scene,
-}
-
-impl Study for Stability {
-    fn work(&self) -> u64 {
-        self.protocol.work(&self.scene)
-    }
-
-    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
-        let results = measure(self.protocol.clone(), &self.scene, watch)?;
-        let (text, tables) = (results.text(), vec![("stability", results.table())]);
-        Some(Findings { text, tables, page: Some(results.page()) })
-    }
-}
-
-/// The range of parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Protocol {
     /// Factors of the stiffness of all runs.
     stiffnesses: Vec<f64>,
     /// Steps, as shares of the predicted limit.
@@ -50,33 +32,42 @@ pub(crate) struct Protocol {
     dampings: Vec<f64>,
 }
 
-impl Protocol {
+impl Study for Stability {
+    /// The number of cells of all maps.
+    fn work(&self) -> u64 {
+        let runs = self.scene.runs.iter().filter(|run| run.tolerance.is_none()).count();
+        (runs * self.stiffnesses.len() * self.shares.len() * self.speeds.len() * self.dampings.len()) as u64
+    }
+
+    fn measure(&self, watch: &Watch<'_>) -> Option<Findings> {
+        let results = measure(self, watch)?;
+        let (text, tables) = (results.text(), vec![("stability", results.table())]);
+        Some(Findings { text, tables, page: Some(results.page()) })
+    }
+}
+
+impl Stability {
     /// A grid that takes a few minutes for the built-in scene.
-    pub(crate) fn usual() -> Self {
-        Self::new(4, 12, vec![1.0], vec![1.0])
+    pub(crate) fn usual(scene: Scene) -> Self {
+        Self::new(scene, 4, 12, vec![1.0], vec![1.0])
     }
 
     /// A finer grid, slower and faster impacts, no damping and more.
-    pub(crate) fn full() -> Self {
-        Self::new(8, 24, vec![0.5, 1.0, 2.0], vec![0.0, 1.0, 3.0])
+    pub(crate) fn full(scene: Scene) -> Self {
+        Self::new(scene, 8, 24, vec![0.5, 1.0, 2.0], vec![0.0, 1.0, 3.0])
     }
 
     /// `columns` in each decade of stiffness, from a tenth to a hundred times that of the scene, and `rows` up to 1.2 times the limit,
     /// which lies between two of them.
-    fn new(columns: u32, rows: u32, speeds: Vec<f64>, dampings: Vec<f64>) -> Self {
+    fn new(scene: Scene, columns: u32, rows: u32, speeds: Vec<f64>, dampings: Vec<f64>) -> Self {
         let decades = |at: u32| f64::from(at) / f64::from(columns) - 1.0;
         Self {
+            scene,
             stiffnesses: (0..=3 * columns).map(|at| libm::exp10(decades(at))).collect(),
             shares: (0..rows).map(|at| 1.2 * (f64::from(at) + 0.5) / f64::from(rows)).collect(),
             speeds,
             dampings,
         }
-    }
-
-    /// The number of cells of a scene's maps.
-    pub(crate) fn work(&self, scene: &Scene) -> u64 {
-        let runs = scene.runs.iter().filter(|run| run.tolerance.is_none()).count();
-        (runs * self.stiffnesses.len() * self.shares.len() * self.speeds.len() * self.dampings.len()) as u64
     }
 }
 
@@ -167,39 +158,35 @@ impl Axes {
 /// The findings.
 #[derive(Clone, Debug)]
 pub(crate) struct Results {
-    pub(crate) protocol: Protocol,
-    pub(crate) scene: Scene,
+    study: Stability,
     pub(crate) axes: Vec<Axes>,
     /// In the order of the axes, speeds, stiffnesses and shares.
     pub(crate) cells: Vec<MapCell>,
 }
 
 /// Simulates the cells with the rayon thread pool of the caller; `None` if `watch` stops it.
-pub(crate) fn measure(protocol: Protocol, scene: &Scene, watch: &Watch<'_>) -> Option<Results> {
+pub(crate) fn measure(study: &Stability, watch: &Watch<'_>) -> Option<Results> {
+    let Stability { scene, stiffnesses, shares, speeds, dampings } = study;
     let studied = (0..scene.runs.len()).filter(|&run| scene.runs[run].tolerance.is_none());
-    let each = |run: usize| protocol.dampings.iter().filter_map(move |&damping| Axes::new(scene, run, damping));
-    let axes: Vec<Axes> = studied.flat_map(each).collect();
-    let mut cells = Vec::new();
-    for axes in &axes {
-        for (&speed, &stiffness) in
-            protocol.speeds.iter().flat_map(|speed| protocol.stiffnesses.iter().map(move |k| (speed, k)))
-        {
-            cells.extend(protocol.shares.iter().map(|&share| MapCell {
-                run: axes.run,
-                rate: axes.rate * stiffness,
-                speed,
-                damping: axes.damping,
-                share,
-                step: share * axes.unit / stiffness.sqrt(),
-                outcome: Outcome::Whole,
-            }));
-        }
+    let of_run = |run: usize| dampings.iter().filter_map(move |&damping| Axes::new(scene, run, damping));
+    let axes: Vec<Axes> = studied.flat_map(of_run).collect();
+    let columns = axes.iter().flat_map(|axes| speeds.iter().map(move |&speed| (axes, speed)));
+    let columns = columns.flat_map(|(axes, speed)| stiffnesses.iter().map(move |&stiffness| (axes, speed, stiffness)));
+    let cell = |(axes, speed, stiffness): (&Axes, f64, f64), share: f64| MapCell {
+        run: axes.run,
+        rate: axes.rate * stiffness,
+        speed,
+        damping: axes.damping,
+        share,
+        step: share * axes.unit / stiffness.sqrt(),
+        outcome: Outcome::Whole,
+    };
+    let mut cells: Vec<_> = columns.flat_map(|column| shares.iter().map(move |&share| cell(column, share))).collect();
+    let outcomes = each(&cells, watch, |cell| outcome(scene, cell, watch))?;
+    for (cell, outcome) in cells.iter_mut().zip(outcomes) {
+        cell.outcome = outcome?;
     }
-    cells.par_iter_mut().with_max_len(1).try_for_each(|cell| {
-        cell.outcome = outcome(scene, cell, watch)?;
-        watch(1).then_some(())
-    })?;
-    Some(Results { protocol, scene: scene.clone(), axes, cells })
+    Some(Results { study: study.clone(), axes, cells })
 }
 
 /// The model of a run with its stiffness and its damping multiplied; `None` for a model of another program.
@@ -248,13 +235,13 @@ impl Results {
 
     /// The axes with the speeds of their maps.
     pub(crate) fn maps(&self) -> impl Iterator<Item = (&Axes, f64)> {
-        self.axes.iter().flat_map(|axes| self.protocol.speeds.iter().map(move |&speed| (axes, speed)))
+        self.axes.iter().flat_map(|axes| self.study.speeds.iter().map(move |&speed| (axes, speed)))
     }
 
-    /// The name of a map, its impacts and damping if the protocol has several, and the model.
+    /// The name of a map, its impacts and damping if the study has several, and the model.
     pub(crate) fn words(&self, axes: &Axes, speed: f64) -> [String; 3] {
-        let run = &self.scene.runs[axes.run];
-        let Protocol { speeds, dampings, .. } = &self.protocol;
+        let run = &self.study.scene.runs[axes.run];
+        let Stability { speeds, dampings, .. } = &self.study;
         let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", short(speed)));
         let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(axes.damping)));
         let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
@@ -265,7 +252,7 @@ impl Results {
     fn up_to(&self, axes: &Axes, speed: f64, is_good: impl Fn(Outcome) -> bool) -> f64 {
         let bad = self.of(axes, speed).filter(|cell| !is_good(cell.outcome)).map(|cell| cell.share);
         let least = bad.fold(f64::INFINITY, f64::min);
-        self.protocol.shares.iter().copied().filter(|&share| share < least).fold(0.0, f64::max)
+        self.study.shares.iter().copied().filter(|&share| share < least).fold(0.0, f64::max)
     }
 }
 

@@ -20,7 +20,7 @@ impl Results {
             Map {
                 name: [name, if conditions.is_empty() { model } else { conditions }],
                 across,
-                up: self.protocol.shares.clone(),
+                up: self.study.shares.clone(),
                 cells: cells.iter().map(|cell| cell.outcome).collect(),
                 ticks: TICKS.map(tick).into(),
                 lines: limit.into_iter().chain(stretched).collect(),
@@ -33,12 +33,12 @@ impl Results {
             }
         };
         Page {
-            title: format!("Stability: {}", self.scene.title),
+            title: format!("Stability: {}", self.study.scene.title),
             caption: vec![
                 "Each cell is a run. The stiffness changes with the same damping ratio; the limit is predicted before the run, at rest."
                     .to_owned(),
             ],
-            contents: Contents::Maps(self.maps().map(map).collect(), self.protocol.speeds.len().clamp(2, 3)),
+            contents: Contents::Maps(self.maps().map(map).collect(), self.study.speeds.len().clamp(2, 3)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The results as text and as a table.
 
-use super::{Axes, MapCell, Outcome, Protocol, Results};
+use super::{Axes, MapCell, Outcome, Results, Stability};
 use crate::table::{Table, or_dash};
 use localshape::internals::typed;
 
@@ -40,18 +40,18 @@ impl Results {
                 ("all are whole up to", or_dash(up_to(|outcome| outcome == Outcome::Whole).map(short))),
             ]
         };
-        let Protocol { stiffnesses, .. } = &self.protocol;
+        let Stability { stiffnesses, .. } = &self.study;
         let [least, most] =
             [stiffnesses.first(), stiffnesses.last()].map(|factor| short(factor.copied().unwrap_or(1.0)));
         let mut text = format!(
             include_str!("text.md"),
-            title = self.scene.title,
-            duration = self.scene.duration,
+            title = self.study.scene.title,
+            duration = self.study.scene.duration,
             least = least,
             most = most,
             table = Table::of(self.maps().map(row)).markdown(2),
         );
-        for run in self.scene.runs.iter().filter(|run| run.tolerance.is_some()) {
+        for run in self.study.scene.runs.iter().filter(|run| run.tolerance.is_some()) {
             text += &format!("\n{} chooses its own steps and is left out.\n", run.name);
         }
         text
@@ -60,7 +60,7 @@ impl Results {
     /// All cells, with all digits.
     pub(super) fn table(&self) -> Table {
         let row = |cell: &MapCell| {
-            let run = &self.scene.runs[cell.run];
+            let run = &self.study.scene.runs[cell.run];
             let axes = self.axes.iter().find(|axes| axes.run == cell.run && axes.damping == cell.damping);
             let has_limit = axes.is_some_and(|axes| axes.limit.is_some());
             [

@@ -1,6 +1,6 @@
 use super::*;
 
-fn small() -> (Protocol, Scene) {
+fn small() -> Stability {
     let text = "
         gravity = [0, -9.8, 0]
         time.duration = 2.5
@@ -11,18 +11,20 @@ fn small() -> (Protocol, Scene) {
             { name = 'springs', integrator = 'backward-euler', model = { kind = 'mass-spring', stiffness = 1e4 } },
             { name = 'own', integrator = 'dormand-prince', tolerance = 1e-6, model = { kind = 'shape-based', stiffness = 1 } },
         ]";
-    let scene = built_in(text, "small");
-    (
-        Protocol { stiffnesses: vec![0.25, 4.0], shares: vec![0.3, 0.9, 1.1], speeds: vec![1.0], dampings: vec![1.0] },
-        scene,
-    )
+    Stability {
+        scene: built_in(text, "small"),
+        stiffnesses: vec![0.25, 4.0],
+        shares: vec![0.3, 0.9, 1.1],
+        speeds: vec![1.0],
+        dampings: vec![1.0],
+    }
 }
 
 #[test]
 fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
-    let (protocol, scene) = small();
-    let results = measure(protocol.clone(), &scene, &|_| true).expect("it is never stopped");
-    assert_eq!(results.cells.len() as u64, protocol.work(&scene));
+    let study = small();
+    let results = measure(&study, &|_| true).expect("it is never stopped");
+    assert_eq!(results.cells.len() as u64, study.work());
     assert!(results.text().ends_with("\nown chooses its own steps and is left out.\n"));
     for cell in results.cells.iter().filter(|cell| cell.run == 0) {
         assert_eq!(cell.outcome == Outcome::Diverged, cell.share > 1.0, "{cell:?}");
@@ -35,8 +37,7 @@ fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
 
 #[test]
 fn columns_are_documented() {
-    let (protocol, scene) = small();
-    let results = measure(protocol, &scene, &|_| true).expect("it is never stopped");
+    let results = measure(&small(), &|_| true).expect("it is never stopped");
     assert_eq!(results.table().heads, crate::reading::documented("stability.csv"));
     assert_eq!(results.table().rows.len(), results.cells.len());
 }
@@ -44,8 +45,7 @@ fn columns_are_documented() {
 /// All rows up to the largest good share are good. A bad cell in any column excludes its row.
 #[test]
 fn the_largest_share_is_below_every_bad_cell() {
-    let (protocol, scene) = small();
-    let mut results = measure(protocol, &scene, &|_| true).expect("it is never stopped");
+    let mut results = measure(&small(), &|_| true).expect("it is never stopped");
     let outcomes = [
         // Rows with shares .3, .9 and 1.1, column by column.
         [Outcome::Whole, Outcome::Whole, Outcome::Diverged],
@@ -74,8 +74,8 @@ fn faster_impacts_have_more_gravity() {
     let outcomes = |gravity: f64, speed: f64| {
         let scene = built_in(&text(gravity), "fall");
         let stiffnesses = vec![1.0, 2.0, 4.0, 8.0];
-        let protocol = Protocol { stiffnesses, shares: vec![0.3], speeds: vec![speed], dampings: vec![1.0] };
-        let results = measure(protocol, &scene, &|_| true).expect("it is never stopped");
+        let study = Stability { scene, stiffnesses, shares: vec![0.3], speeds: vec![speed], dampings: vec![1.0] };
+        let results = measure(&study, &|_| true).expect("it is never stopped");
         results.cells.into_iter().map(|cell| cell.outcome).collect::<Vec<_>>()
     };
     let twice = outcomes(5.0, 2.0);
