@@ -137,19 +137,37 @@ impl Orientation {
     }
 }
 
-/// The result of one start in one case.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The result of one start in one case: running statistics of α.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Statistics {
-    /// Number of evaluations of α; fewer than planned if the simulation diverged. If zero, the numbers below are NaN.
+    /// Number of evaluations of α; fewer than planned if the simulation diverged.
     pub(crate) evaluations: u64,
-    /// Its mean (rad/s²).
-    pub(crate) mean: f64,
-    /// Its standard deviation (rad/s²), over all evaluations.
-    pub(crate) deviation: f64,
-    /// Its maximum (rad/s²).
-    pub(crate) maximum: f64,
+    mean: f64,
+    /// The sum of the squares of the distances from the mean.
+    squares: f64,
+    maximum: f64,
     /// Whether the simulation diverged.
     pub(crate) diverged: bool,
+}
+
+impl Statistics {
+    fn add(&mut self, residual: f64) {
+        self.evaluations += 1;
+        // Welford 1962: avoids differences of large sums.
+        let before = residual - self.mean;
+        self.mean += before / self.evaluations as f64;
+        self.squares += before * (residual - self.mean);
+        // NaN is kept, as in the mean.
+        if self.evaluations == 1 || !(self.maximum.is_nan() || self.maximum > residual) {
+            self.maximum = residual;
+        }
+    }
+
+    /// The mean, the standard deviation over all evaluations, and the maximum of α (rad/s²); NaN without evaluations.
+    pub(crate) fn numbers(&self) -> [f64; 3] {
+        let Self { evaluations, mean, squares, maximum, .. } = *self;
+        if evaluations == 0 { [f64::NAN; 3] } else { [mean, (squares / evaluations as f64).sqrt(), maximum] }
+    }
 }
 
 /// The results of the measurement.
@@ -262,7 +280,7 @@ fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch
     let cubes = starts.iter().chain(starts).take(starts.len().max(2));
     let mut world = crowd(cubes, &starts[0]).world(case);
     let mut has_landed = vec![false; starts.len()];
-    let mut residuals = vec![Residuals::default(); starts.len()];
+    let mut statistics = vec![Statistics::default(); starts.len()];
     let all = evaluations * starts.len() as u64;
     let (mut taken, mut reported) = (0, 0);
     let mut before = Vec::new();
@@ -274,13 +292,13 @@ fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch
         }
         // They are not needed before the first cube has landed.
         let alphas = if has_landed.contains(&true) { world.residuals(0, &before) } else { Vec::new() };
-        for (at, residuals) in residuals.iter_mut().enumerate() {
+        for (at, statistics) in statistics.iter_mut().enumerate() {
             if !has_landed[at] {
                 // Only the floor can make a corner move upwards.
                 let velocities = &world.state().velocity[at * CORNERS..][..CORNERS];
                 has_landed[at] = velocities.iter().any(|velocity| velocity.y > 0.0);
-            } else if residuals.taken < evaluations {
-                residuals.add(alphas[at]);
+            } else if statistics.evaluations < evaluations {
+                statistics.add(alphas[at]);
                 taken += 1;
             }
         }
@@ -300,45 +318,10 @@ fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch
     }
     if diverged && has_landed[0] {
         // The rejected step had evaluated its forces in this state.
-        residuals[0].add(world.report(0).residual.unwrap_or(f64::NAN));
+        statistics[0].add(world.report(0).residual.unwrap_or(f64::NAN));
     }
-    watch(all - reported).then(|| residuals.into_iter().map(|one| one.statistics(diverged)).collect())
-}
-
-/// Running statistics of α.
-#[derive(Clone, Copy, Debug, Default)]
-struct Residuals {
-    taken: u64,
-    mean: f64,
-    squares: f64,
-    maximum: Option<f64>,
-}
-
-impl Residuals {
-    fn add(&mut self, residual: f64) {
-        self.taken += 1;
-        // Welford 1962: avoids differences of large sums.
-        let before = residual - self.mean;
-        self.mean += before / self.taken as f64;
-        self.squares += before * (residual - self.mean);
-        // NaN is kept, as in the mean.
-        self.maximum = match self.maximum {
-            Some(maximum) if maximum.is_nan() || maximum > residual => Some(maximum),
-            _ => Some(residual),
-        };
-    }
-
-    /// The statistics; NaN if there are no values.
-    fn statistics(self, diverged: bool) -> Statistics {
-        let Self { taken, mean, squares, maximum } = self;
-        Statistics {
-            evaluations: taken,
-            mean: if taken > 0 { mean } else { f64::NAN },
-            deviation: (squares / taken as f64).sqrt(),
-            maximum: maximum.unwrap_or(f64::NAN),
-            diverged,
-        }
-    }
+    statistics.iter_mut().for_each(|one| one.diverged = diverged);
+    watch(all - reported).then_some(statistics)
 }
 
 impl Results {
@@ -346,13 +329,9 @@ impl Results {
     pub(crate) fn summaries(&self) -> Vec<Summary> {
         let summary = |(at, &case): (usize, &Case)| {
             let of_starts = || self.statistics.iter().skip(at).step_by(self.cases.len());
-            Summary {
-                case,
-                mean: Spread::of(of_starts().map(|one| one.mean)),
-                deviation: Spread::of(of_starts().map(|one| one.deviation)),
-                maximum: Spread::of(of_starts().map(|one| one.maximum)),
-                diverged: of_starts().filter(|one| one.diverged).count(),
-            }
+            let [mean, deviation, maximum] =
+                [0, 1, 2].map(|number| Spread::of(of_starts().map(|one| one.numbers()[number])));
+            Summary { case, mean, deviation, maximum, diverged: of_starts().filter(|one| one.diverged).count() }
         };
         self.cases.iter().enumerate().map(summary).collect()
     }

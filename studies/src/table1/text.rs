@@ -88,6 +88,7 @@ impl Results {
     pub(super) fn start_table(&self) -> Table {
         let row = |case: &Case, number: usize, start: &Statistics| {
             let Orientation { axis, angle } = self.orientations[number];
+            let [mean, deviation, maximum] = start.numbers();
             [
                 ("solver", case.solver.into()),
                 ("row", case.row.name.into()),
@@ -100,9 +101,9 @@ impl Results {
                 ("axis_z", axis.z.into()),
                 ("angle", angle.into()),
                 ("evaluations", start.evaluations.into()),
-                ("mean", start.mean.into()),
-                ("deviation", start.deviation.into()),
-                ("maximum", start.maximum.into()),
+                ("mean", mean.into()),
+                ("deviation", deviation.into()),
+                ("maximum", maximum.into()),
                 ("status", if start.diverged { "diverged" } else { "ok" }.into()),
             ]
         };
