@@ -1,6 +1,8 @@
 //! Bodies of the study, worlds of them, and the triangles of their surfaces that cross.
 
+use crate::material::Elements;
 use glam::{DQuat, DVec3};
+use localshape::sim::geometry::bounds;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::shape_based::{DampingReading, ShapeBased};
 use localshape::sim::{
@@ -27,14 +29,9 @@ pub(super) fn block(cells: [u32; 3], place: impl Fn(DVec3, DVec3) -> DVec3) -> A
 
 /// The nodes and the cells of a lattice, both with x fastest. `place` gets the numbers of cells before a node along each axis.
 pub(crate) fn lattice(cells: [u32; 3], place: impl Fn(DVec3) -> DVec3) -> (Vec<DVec3>, IndexLists) {
-    let nodes = cells.map(|cells| cells + 1);
-    let number = |at: [u32; 3]| at[0] + nodes[0] * (at[1] + nodes[1] * at[2]);
-    let grid =
-        |[nx, ny, nz]: [u32; 3]| (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
-    let corner = |cell: [u32; 3], bit: u32| number([0, 1, 2].map(|axis| cell[axis] + (bit >> axis & 1)));
-    let mut elements = IndexLists::default();
-    grid(cells).for_each(|cell| elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|bit| corner(cell, bit))));
-    (grid(nodes).map(|at| place(DVec3::from_array(at.map(f64::from)))).collect(), elements)
+    let body = Elements::Cells.block(&cells, 1.0, (0.0, 1), 1.0);
+    let (corner, _) = bounds(body.rest());
+    (body.rest().iter().map(|&at| place(at - corner)).collect(), body.elements().clone())
 }
 
 /// A block of cubes.
@@ -105,16 +102,6 @@ impl Setting {
 pub(crate) fn obstacle(shape: Shape, [restitution, friction]: [f64; 2]) -> Obstacle {
     let friction_of = FrictionOf::default();
     Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction, friction_of }
-}
-
-/// The places of the nodes of each body in a world.
-pub(super) fn each<'a>(world: &'a World, bodies: &'a [Placed]) -> impl Iterator<Item = (&'a Body, &'a [DVec3])> {
-    let mut first = 0;
-    bodies.iter().map(move |placed| {
-        let own = first..first + placed.body.len();
-        first = own.end;
-        (&*placed.body, &world.state().position[own])
-    })
 }
 
 /// A mean of values of the nodes of a body, by their masses.

@@ -2,7 +2,7 @@
 
 use super::bodies::{Placed, SIDE, Setting, cubes};
 use super::{Measured, Trial};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use localshape::sim::{Body, BodyContact, IndexLists};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -45,8 +45,7 @@ fn closes(speed: f64, restitution: f64, most: Option<u64>) -> Measured {
     let body = u();
     let mut setting = Setting::new(1e4, [restitution, 0.0]);
     setting.around.contacts.as_mut().expect("contacts").bodies = vec![BodyContact { itself: true, thickness: None }];
-    let placed = [Placed { turned: DQuat::IDENTITY, ..Placed::still(&body, DVec3::ZERO) }];
-    let mut world = setting.world(&placed);
+    let mut world = setting.world(&[Placed::still(&body, DVec3::ZERO)]);
     let mut state = world.state().clone();
     for (velocity, rest) in state.velocity.iter_mut().zip(body.rest()) {
         if rest.y > -1.4 * SIDE {

@@ -1,6 +1,6 @@
 //! Piles and towers that are to stay where they are.
 
-use super::bodies::{GRAVITY, MASS, Placed, SIDE, Setting, cubes, each, mean, obstacle};
+use super::bodies::{GRAVITY, MASS, Placed, SIDE, Setting, cubes, mean, obstacle};
 use super::{Measured, Trial};
 use glam::DVec3;
 use localshape::sim::{Body, Shape, World};
@@ -41,7 +41,8 @@ fn stay(name: &str, body: &Arc<Body>, at: &[DVec3], stiffness: f64, restitution:
     setting.around.obstacles = vec![obstacle(floor, [restitution, 0.5])];
     let mut world = setting.world(&bodies);
     world.advance(setting.steps(SETTLING.min(time)));
-    let centres = |world: &World| each(world, &bodies).map(|(body, at)| mean(body, at)).collect::<Vec<_>>();
+    let centres =
+        |world: &World| world.state().position.chunks(body.len()).map(|at| mean(body, at)).collect::<Vec<_>>();
     let momentum = |world: &World| {
         let masses = bodies.iter().flat_map(|placed| placed.body.mass());
         world.state().velocity.iter().zip(masses).map(|(speed, mass)| speed.y * mass).sum::<f64>()

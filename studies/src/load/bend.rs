@@ -5,9 +5,9 @@
 //! (−13.4, 53.4, −23.5) from (29.29, 70.71, 0), is quoted by the tests of `OpenFAST` (`bd_curved_beam` of BeamDyn) and by the documentation of Kynema.
 
 use super::Case;
-use crate::material::{Bar, Model, Rod, rest_of};
+use crate::material::{Bar, Model, Rod, moved, rest_of};
 use glam::DVec3;
-use localshape::sim::{Body, Material};
+use localshape::sim::Material;
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 
@@ -29,13 +29,11 @@ fn measure(model: &Model, refined: u32) -> Option<f64> {
     let along = libm::round(RADIUS * FRAC_PI_4) as u32 * across;
     let straight = Bar::new(model.elements, [across, across, along], 1.0 / f64::from(across), 1.0);
     // From a bar along z, with its corner at y = 0.
-    let place = |at: &DVec3| {
+    let place = |at: DVec3| {
         let (sine, cosine) = libm::sincos((at.z / straight.length + 0.5) * FRAC_PI_4);
         DVec3::new(RADIUS - (RADIUS + at.x) * cosine, (RADIUS + at.x) * sine, at.y)
     };
-    let body = Body::builder(straight.body.rest().iter().map(place).collect());
-    let body = body.elements(straight.body.elements().clone()).masses(straight.body.mass().to_vec());
-    let body = Arc::new(body.build().expect("an arc"));
+    let body = moved(&straight.body, place);
     let made = model.on(&body, MATERIAL, 1.0 / f64::from(across))?;
     let around = straight.under(DVec3::Z * LOAD);
     let found = rest_of(&[(Arc::clone(&body), made.as_ref())], body.rest().to_vec(), &around, 1.0)?;

@@ -5,12 +5,12 @@
 //! the deflection of the middle of that side.
 
 use super::balance::{dead, hold, rest_of};
-use super::{Elements, MODELS, Model, decimals};
+use super::{Elements, MODELS, Model, decimals, moved};
 use crate::page::{Contents, Page, Plot};
 use crate::study::{Findings, Study, Watch, each};
 use crate::table::{Cell, Table};
 use glam::DVec3;
-use localshape::sim::{Body, Dimension, Material, Surroundings};
+use localshape::sim::{Body, Material, Surroundings};
 use std::sync::Arc;
 
 /// The study.
@@ -98,20 +98,11 @@ fn deflection(model: &Model, cells: u32) -> Option<f64> {
 /// The panel, by a bilinear map of a square block.
 fn panel(model: &Model, cells: u32) -> Arc<Body> {
     let square = model.elements.block(&[cells; 2], 1.0, (0.0, 1), 1.0);
-    let place = |rest: &DVec3| {
+    let place = |rest: DVec3| {
         let [s, t] = [rest.x / f64::from(cells) + 0.5, rest.y / f64::from(cells)];
         DVec3::new(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s), 0.0)
     };
-    let rest: Vec<_> = square.rest().iter().map(place).collect();
-    let elements = square.elements().clone();
-    Arc::new(
-        Body::builder(rest)
-            .dimension(Dimension::Plane)
-            .elements(elements)
-            .masses(square.mass().to_vec())
-            .build()
-            .expect("a body"),
-    )
+    moved(&square, place)
 }
 
 impl Results {

@@ -38,7 +38,7 @@ pub(crate) struct Model {
     /// As in a scene.
     pub(crate) kind: &'static str,
     /// A further key and its value.
-    more: Option<[&'static str; 2]>,
+    pub(crate) more: Option<[&'static str; 2]>,
     pub(crate) elements: Elements,
 }
 
@@ -76,7 +76,8 @@ pub(crate) static STEPPING: [Model; 2] = [of_cells("xpbd"), of_simplices("xpbd")
 /// The shape model that bends like its material.
 const MENDED: &str = "shape-based, bending 1/3";
 
-const fn of_cells(kind: &'static str) -> Model {
+/// A model by its kind alone, for hexahedra.
+pub(crate) const fn of_cells(kind: &'static str) -> Model {
     Model { name: kind, kind, more: None, elements: Elements::Cells }
 }
 
@@ -85,7 +86,8 @@ const fn of_simplices(kind: &'static str) -> Model {
 }
 
 impl Model {
-    const fn with(self, name: &'static str, more: [&'static str; 2]) -> Self {
+    /// The same model with another name and a further key.
+    pub(crate) const fn with(self, name: &'static str, more: [&'static str; 2]) -> Self {
         Self { name, more: Some(more), ..self }
     }
 
@@ -139,6 +141,13 @@ impl Elements {
             .unwrap_or_else(|error| panic!("a block without mistakes: {error}"));
         Arc::clone(&scene.bodies[0].body)
     }
+}
+
+/// A body with its nodes at other places, with the same masses.
+pub(crate) fn moved(body: &Body, place: impl Fn(DVec3) -> DVec3) -> Arc<Body> {
+    let moved = Body::builder(body.rest().iter().copied().map(place).collect()).dimension(body.dimension());
+    let moved = moved.elements(body.elements().clone()).masses(body.mass().to_vec()).build();
+    Arc::new(moved.expect("a body as before"))
 }
 
 /// The mean of the displacements of some nodes (m).
