@@ -13,52 +13,65 @@ use std::sync::Arc;
 
 /// An integrator, with a solver of rotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Method {
-    /// An integrator of scenes.
-    Scene(Integrator),
-    /// Velocity Verlet with a reading of the paper for rotations.
-    Reading(RotationReading),
-    /// A symplectic composition that scenes do not offer, by its name.
-    Composed(&'static str, Composition),
+pub(crate) struct Method {
+    /// An integrator of scenes, or one with the same requirements on forces as the composition.
+    integrator: Integrator,
+    /// A symplectic composition that scenes do not offer, with its name.
+    composition: Option<(&'static str, Composition)>,
+    /// A reading of the paper for rotations.
+    pub(crate) reading: Option<RotationReading>,
+    /// The approximate number of evaluations of the forces in a step.
+    evaluations: f64,
+    /// The name of the methods of its order.
+    pub(crate) family: &'static str,
 }
 
 impl Method {
     /// The default of scenes.
-    pub(crate) const DEFAULT: Self = Self::Scene(Integrator::SemiImplicitEuler);
-    pub(crate) const VERLET: Self = Self::Scene(Integrator::VelocityVerlet);
-    pub(crate) const PEFRL: Self = Self::Scene(Integrator::Pefrl);
-    pub(crate) const DORMAND_PRINCE: Self = Self::Scene(Integrator::DormandPrince);
-    /// Of fourth, of sixth and of eighth order.
-    pub(crate) const FOREST_RUTH: Self = Self::Composed("forest-ruth", methods::FOREST_RUTH);
-    pub(crate) const BLANES_MOAN: Self = Self::Composed("blanes-moan", methods::BLANES_MOAN);
-    pub(crate) const KAHAN_LI: Self = Self::Composed("kahan-li", methods::KAHAN_LI);
+    pub(crate) const DEFAULT: Self = Self::of_scenes(Integrator::SemiImplicitEuler, 1.0, "order 1");
+    pub(crate) const VERLET: Self = Self::of_scenes(Integrator::VelocityVerlet, 1.0, "order 2");
+    pub(crate) const RUNGE_KUTTA: Self = Self::of_scenes(Integrator::RungeKutta, 4.0, "order 4");
+    pub(crate) const PEFRL: Self = Self::of_scenes(Integrator::Pefrl, 4.0, "order 4");
+    pub(crate) const DORMAND_PRINCE: Self = Self::of_scenes(Integrator::DormandPrince, 6.0, "order 5");
+    pub(crate) const FOREST_RUTH: Self = Self::composed("forest-ruth", methods::FOREST_RUTH, 3.0, "order 4");
+    pub(crate) const BLANES_MOAN: Self = Self::composed("blanes-moan", methods::BLANES_MOAN, 14.0, "order 6");
+    pub(crate) const KAHAN_LI: Self = Self::composed("kahan-li", methods::KAHAN_LI, 17.0, "order 8");
 
     /// All methods.
     pub(crate) const ALL: [Self; 13] = [
         Self::DEFAULT,
-        Self::Scene(Integrator::ExplicitEuler),
-        Self::Scene(Integrator::BackwardEuler),
+        Self::of_scenes(Integrator::ExplicitEuler, 1.0, "order 1"),
+        Self::of_scenes(Integrator::BackwardEuler, 40.0, "order 1"),
         Self::VERLET,
-        Self::Reading(RotationReading::Arctangent),
-        Self::Reading(RotationReading::VectorLength),
-        Self::Reading(RotationReading::LinearUpdate),
+        Self::of_reading(RotationReading::Arctangent),
+        Self::of_reading(RotationReading::VectorLength),
+        Self::of_reading(RotationReading::LinearUpdate),
         Self::FOREST_RUTH,
-        Self::Scene(Integrator::RungeKutta),
+        Self::RUNGE_KUTTA,
         Self::PEFRL,
         Self::BLANES_MOAN,
         Self::KAHAN_LI,
         Self::DORMAND_PRINCE,
     ];
 
+    const fn of_scenes(integrator: Integrator, evaluations: f64, family: &'static str) -> Self {
+        Self { integrator, composition: None, reading: None, evaluations, family }
+    }
+
+    const fn composed(name: &'static str, composition: Composition, evaluations: f64, family: &'static str) -> Self {
+        Self { composition: Some((name, composition)), ..Self::of_scenes(Integrator::Pefrl, evaluations, family) }
+    }
+
+    /// Velocity Verlet with a reading of the paper for rotations.
+    pub(crate) const fn of_reading(reading: RotationReading) -> Self {
+        Self { reading: Some(reading), ..Self::VERLET }
+    }
+
     /// The names of the integrator and of a solver of rotations that is not the default; as in scenes, if they are
     /// there.
     pub(crate) fn names(self) -> [String; 2] {
-        let (integrator, rotation) = match self {
-            Self::Scene(integrator) => (typed(&integrator), String::new()),
-            Self::Reading(rotation) => (typed(&Integrator::VelocityVerlet), typed(&rotation)),
-            Self::Composed(name, _) => (name.to_owned(), String::new()),
-        };
-        [integrator, rotation]
+        let integrator = self.composition.map_or_else(|| typed(&self.integrator), |(name, _)| name.to_owned());
+        [integrator, self.reading.map_or_else(String::new, |reading| typed(&reading))]
     }
 
     /// Both names.
@@ -67,50 +80,29 @@ impl Method {
         if rotation.is_empty() { integrator } else { format!("{integrator}, {rotation}") }
     }
 
-    /// The approximate number of evaluations of the forces in a step.
-    fn evaluations(self) -> f64 {
-        match self {
-            Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => 4.0,
-            Self::Scene(Integrator::DormandPrince) => 6.0,
-            Self::Scene(Integrator::BackwardEuler) => 40.0,
-            Self::Scene(_) | Self::Reading(_) => 1.0,
-            Self::Composed(_, composition) => composition.evaluations() as f64,
-        }
-    }
-
     /// Whether it chooses its steps by a tolerance.
     pub(crate) fn is_adaptive(self) -> bool {
         self == Self::DORMAND_PRINCE
-    }
-
-    /// The integrator of scenes, or one with the same requirements on forces together with the composition.
-    fn integrator(self) -> (Integrator, Option<Composition>) {
-        match self {
-            Self::Scene(integrator) => (integrator, None),
-            Self::Reading(_) => (Integrator::VelocityVerlet, None),
-            Self::Composed(_, composition) => (Integrator::Pefrl, Some(composition)),
-        }
     }
 
     /// The model of a run, with the rotations of this method; `None` if the model has no choice of them.
     pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
         let model = &subject.scene.runs[subject.run].models[0];
         let with = |rotation| with_rotation(&**model, subject.body(), rotation);
-        match self {
-            Self::Reading(rotation) => with(rotation),
-            _ => with(RotationReading::Robust).or_else(|| Some(Arc::clone(model))),
+        match self.reading {
+            Some(rotation) => with(rotation),
+            None => with(RotationReading::Robust).or_else(|| Some(Arc::clone(model))),
         }
     }
 
     /// Why it cannot advance a model; `None` if it can.
     pub(crate) fn refusal(self, subject: &Subject, model: &dyn ElasticModel) -> Option<&'static str> {
-        self.integrator().0.refusal(model, subject.body(), 0.0)
+        self.integrator.refusal(model, subject.body(), 0.0)
     }
 
     /// Whether it has vectorised steps for a model.
     pub(crate) fn is_fast(self, model: &dyn ElasticModel) -> bool {
-        let (integrator, composition) = self.integrator();
-        composition.is_none() && Kernel::of(model, integrator) == Kernel::Fast
+        self.composition.is_none() && Kernel::of(model, self.integrator) == Kernel::Fast
     }
 }
 
@@ -154,7 +146,7 @@ impl Attempt {
     /// a power of two: runs with few steps have all their states at [`MOMENTS`], and runs with many steps have a state
     /// at each.
     pub(super) fn new(method: Method, evaluations: f64, tolerance: f64) -> Self {
-        let power = libm::round(libm::log2(evaluations / method.evaluations())).max(0.0);
+        let power = libm::round(libm::log2(evaluations / method.evaluations)).max(0.0);
         let steps = if method.is_adaptive() { MOMENTS as u64 } else { 1 << power as u32 };
         Self { method, steps, tolerance }
     }
@@ -168,13 +160,13 @@ impl Attempt {
     /// The run of a scene at its start, with another model.
     pub(super) fn world(self, subject: &Subject, model: Arc<dyn ElasticModel>) -> World {
         let mut scene = subject.scene.clone();
-        let (integrator, composition) = self.method.integrator();
+        let Method { integrator, composition, .. } = self.method;
         let run = &mut scene.runs[subject.run];
         run.kernel = if self.method.is_fast(model.as_ref()) { Kernel::Fast } else { Kernel::Reference };
         run.step = scene.duration / self.steps as f64;
         (run.integrator, run.tolerance, run.models[0]) = (integrator, Some(self.tolerance), model);
         let mut world = scene.world(subject.run);
-        if let Some(composition) = composition {
+        if let Some((_, composition)) = composition {
             world.set_method(Box::new(ByComposition::new(composition)));
         }
         world

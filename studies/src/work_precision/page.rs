@@ -4,7 +4,6 @@ use super::method::Method;
 use super::{Comparison, Measured, Results};
 use crate::page::{Contents, Line, Page, Plot};
 use crate::turns::machine;
-use localshape::sim::Integrator;
 
 /// The name of the axis upwards.
 const ERROR: &str = "position error, as a share of the body's size";
@@ -20,7 +19,7 @@ impl Results {
                         Some([across(one), error])
                     });
                     let name = method.names().into_iter().rfind(|name| !name.is_empty()).unwrap_or_default();
-                    let (family, is_strong) = (method.family().to_owned(), method == Method::DEFAULT);
+                    let (family, is_strong) = (method.family.to_owned(), method == Method::DEFAULT);
                     Line { name, family, is_strong, points: points.collect() }
                 };
                 let axes = [axis, ERROR];
@@ -41,21 +40,6 @@ impl Results {
                 format!("Times on one thread of {}.", machine()),
             ],
             contents: Contents::Plots(self.comparisons.iter().flat_map(of).collect()),
-        }
-    }
-}
-
-impl Method {
-    /// The family of methods of its order.
-    fn family(self) -> &'static str {
-        match self {
-            Self::Scene(Integrator::VelocityVerlet) | Self::Reading(_) => "order 2",
-            Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => "order 4",
-            Self::Composed(..) if self == Self::FOREST_RUTH => "order 4",
-            Self::Composed(..) if self == Self::BLANES_MOAN => "order 6",
-            Self::Composed(..) => "order 8",
-            Self::Scene(Integrator::DormandPrince) => "order 5",
-            Self::Scene(_) => "order 1",
         }
     }
 }

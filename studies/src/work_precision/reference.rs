@@ -3,7 +3,6 @@
 use super::method::{Attempt, End, MOMENTS, Method};
 use super::{Reference, Subject};
 use glam::DVec3;
-use localshape::sim::Integrator;
 use localshape::sim::model::ElasticModel;
 use std::sync::Arc;
 
@@ -23,7 +22,7 @@ pub(super) fn reference(
 ) -> Result<(Course, Reference), String> {
     // With obstacles only the adaptive method is of high order. Of the others, the one with the smallest steps is best.
     let best: &[Method] = if subject.scene.obstacles.is_empty() {
-        &[Method::BLANES_MOAN, Method::KAHAN_LI, Method::DORMAND_PRINCE, Method::Scene(Integrator::RungeKutta)]
+        &[Method::BLANES_MOAN, Method::KAHAN_LI, Method::DORMAND_PRINCE, Method::RUNGE_KUTTA]
     } else {
         &[Method::DORMAND_PRINCE]
     };

@@ -79,7 +79,7 @@ impl Comparison {
         let wanted = WANTED.into_iter().filter(|&error| error > own);
         let rows = wanted.filter_map(|error| {
             let cost = |method| self.cost(method, error);
-            let integrators = self.methods().filter(|method| !matches!(method, Method::Reading(_)));
+            let integrators = self.methods().filter(|method| method.reading.is_none());
             let costs: Vec<_> = integrators.filter_map(cost).collect();
             let least = |of: fn(&Cost) -> f64| costs.iter().min_by(|one, other| of(one).total_cmp(&of(other)));
             let (fewest, fastest) = (least(|one| one.evaluations)?, least(|one| one.time)?);

@@ -58,7 +58,8 @@ fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
         assert!((own - order).abs() < 0.3, "{method:?}: {own}");
     }
     let least = |method| found.of(method).filter_map(|one| one.error).fold(f64::INFINITY, f64::min);
-    let readings = [RotationReading::Arctangent, RotationReading::LinearUpdate].map(|one| least(Method::Reading(one)));
+    let readings =
+        [RotationReading::Arctangent, RotationReading::LinearUpdate].map(|one| least(Method::of_reading(one)));
     let (exact, [printed, linear]) = (least(Method::VERLET), readings);
     assert!(printed < 2.0 * exact && linear > 100.0 * exact, "{exact:e} {printed:e} {linear:e}");
     assert_eq!(results.table().rows.len(), found.measured.len());
@@ -141,7 +142,7 @@ fn a_cost_is_that_from_which_on_errors_are_small() {
 
 #[test]
 fn the_scenes_that_are_measured_by_default_have_no_mistakes() {
-    let has_readings = |subject: &Subject| subject.methods().iter().any(|(one, _)| matches!(one, Method::Reading(_)));
+    let has_readings = |subject: &Subject| subject.methods().iter().any(|(one, _)| one.reading.is_some());
     assert_eq!(
         usual(&[]).iter().map(has_readings).collect::<Vec<_>>(),
         [true, true, false],
