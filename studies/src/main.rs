@@ -209,7 +209,7 @@ impl Name {
                 Task::new("stability", study, threads.count(), of.arguments())
             }
             Self::Stress { model, threads } => {
-                let study = Stress { steps: stress::STEPS, models: stress::NamedModel::compared(&model) };
+                let study = Stress { steps: stress::STEPS, models: stress::compared(&model) };
                 Task::new("stress", study, threads.count(), repeated("--model", &model))
             }
             Self::Beam(threads) => Task::new("beam", Beam::usual(), threads.count(), Vec::new()),

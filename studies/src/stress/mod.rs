@@ -6,10 +6,11 @@
 mod text;
 mod trials;
 
+use crate::material::{Model, of_cells};
 use crate::models::Alike;
 use crate::study::{Findings, Study, Watch, each};
 use glam::DVec3;
-use localshape::sim::{Integrator, State, Status, Stepping, World};
+use localshape::sim::{Integrator, Motion, State, Status, Stepping, World};
 use trials::{Trial, trials};
 
 /// The study.
@@ -18,7 +19,7 @@ pub(crate) struct Stress {
     /// Steps of bodies that rest or spin.
     pub(crate) steps: u64,
     /// The models that are compared.
-    pub(crate) models: Vec<NamedModel>,
+    pub(crate) models: Vec<Model>,
 }
 
 /// The usual number of steps.
@@ -35,35 +36,20 @@ impl Study for Stress {
     }
 }
 
-/// A model and its name in tables.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct NamedModel {
-    pub(crate) name: String,
-    kind: String,
-    /// A key besides its stiffness and its damping, and its value.
-    more: Option<[&'static str; 2]>,
-}
-
-impl NamedModel {
-    fn new(name: &str, kind: &str, more: Option<[&'static str; 2]>) -> Self {
-        Self { name: name.to_owned(), kind: kind.to_owned(), more }
+/// The shape model, whose promises are tested, and models by their names, which are kept for ever; without any, those of the paper.
+pub(crate) fn compared(kinds: &[String]) -> Vec<Model> {
+    let shape = of_cells("shape-based");
+    if !kinds.is_empty() {
+        return [shape].into_iter().chain(kinds.iter().map(|kind| of_cells(kind.clone().leak()))).collect();
     }
-
-    /// The shape model, whose promises are tested, and models by their names; without any, those of the paper.
-    pub(crate) fn compared(kinds: &[String]) -> Vec<Self> {
-        let shape = Self::new("shape-based", "shape-based", None);
-        if !kinds.is_empty() {
-            return [shape].into_iter().chain(kinds.iter().map(|kind| Self::new(kind, kind, None))).collect();
-        }
-        let springs = |name: &str, topology| Self::new(name, "mass-spring", Some(["springs", topology]));
-        vec![
-            shape,
-            // Two passes, as the paper advises.
-            Self::new("shape-based, Eq. (15) twice", "shape-based", Some(["rotation", "arctangent"])),
-            springs("springs, edges and face diagonals", "edges+face-diagonals"),
-            springs("springs, all pairs of an element", "all"),
-        ]
-    }
+    let springs = |name, topology| of_cells("mass-spring").with(name, ["springs", topology]);
+    vec![
+        shape,
+        // Two passes, as the paper advises.
+        shape.with("shape-based, Eq. (15) twice", ["rotation", "arctangent"]),
+        springs("springs, edges and face diagonals", "edges+face-diagonals"),
+        springs("springs, all pairs of an element", "all"),
+    ]
 }
 
 /// The promise of the default model for the end of a trial, besides finite numbers.
@@ -99,21 +85,16 @@ pub(crate) struct Outcome {
     pub(crate) creep: f64,
 }
 
-/// The outcomes of a trial, one for each model that takes the body.
-#[derive(Clone, Debug, PartialEq)]
+/// A trial, with its outcomes, one for each model that takes the body.
+#[derive(Debug)]
 pub(crate) struct Tried {
-    pub(crate) group: &'static str,
-    pub(crate) name: String,
-    pub(crate) elements: usize,
-    pub(crate) steps: u64,
-    pub(crate) promise: Promise,
+    trial: Trial,
     pub(crate) outcomes: Vec<Option<Outcome>>,
 }
 
 /// The findings, which do not depend on the machine.
-#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Results {
-    pub(crate) models: Vec<NamedModel>,
+    pub(crate) models: Vec<Model>,
     pub(crate) rows: Vec<Tried>,
 }
 
@@ -126,18 +107,11 @@ const MOST_CHANGE: f64 = 1e-9;
 const MOST_CREEP: f64 = 1e-3;
 
 /// Makes all trials on the thread pool of the caller; `None` if `watch` stops it.
-pub(crate) fn measure(steps: u64, models: &[NamedModel], watch: &Watch<'_>) -> Option<Results> {
+pub(crate) fn measure(steps: u64, models: &[Model], watch: &Watch<'_>) -> Option<Results> {
     let trials = trials(steps);
     let pairs: Vec<_> = trials.iter().flat_map(|trial| models.iter().map(move |model| (trial, model))).collect();
     let mut outcomes = each(&pairs, watch, |(trial, model)| trial.outcome(model))?.into_iter();
-    let row = |trial: Trial| Tried {
-        group: trial.group,
-        name: trial.name,
-        elements: trial.body.elements().len(),
-        steps: trial.steps,
-        promise: trial.promise,
-        outcomes: outcomes.by_ref().take(models.len()).collect(),
-    };
+    let row = |trial| Tried { trial, outcomes: outcomes.by_ref().take(models.len()).collect() };
     Some(Results { models: models.to_vec(), rows: trials.into_iter().map(row).collect() })
 }
 
@@ -152,10 +126,10 @@ impl Tried {
             }
         };
         demand(one.diverged.is_none(), "diverged".to_owned());
-        if self.promise != Promise::Bounded {
-            demand(one.turned_over == 0, format!("{} of {} turned over", one.turned_over, self.elements));
+        if self.trial.promise != Promise::Bounded {
+            demand(one.turned_over == 0, format!("{} of {} turned over", one.turned_over, self.trial.elements()));
         }
-        match self.promise {
+        match self.trial.promise {
             Promise::Restored(most) => demand(one.shape_error <= most, format!("shape error {:.1e}", one.shape_error)),
             Promise::Settled(most) => demand(one.unsettled <= most, format!("not settled by {:.1e}", one.unsettled)),
             Promise::Bounded => {}
@@ -176,14 +150,14 @@ impl Tried {
 
 impl Trial {
     /// `None` for a model that does not take the body.
-    fn world(&self, model: &NamedModel, integrator: Integrator, start: State) -> Option<World> {
+    fn world(&self, model: &Model, integrator: Integrator, start: State) -> Option<World> {
         let alike = Alike::on_body(self.stiffness, &self.body);
-        let model = alike.model(&self.body, &model.kind, self.damping, model.more)?;
+        let model = alike.model(&self.body, model.kind, self.damping, model.more)?;
         let stepping = Stepping::new(integrator, self.step);
         Some(World::new(&self.body, start, model.as_ref(), self.around.clone(), stepping))
     }
 
-    fn outcome(&self, model: &NamedModel) -> Option<Outcome> {
+    fn outcome(&self, model: &Model) -> Option<Outcome> {
         /// The number of checks of the state.
         const LOOKS: u64 = 64;
         let mut world = self.world(model, Integrator::default(), self.start.clone())?;
@@ -204,15 +178,17 @@ impl Trial {
         };
         let last = Look::of(self, &world);
         let measured = |is_measured: bool, value: f64| if is_measured { value } else { f64::NAN };
+        let obstacles = &self.around.obstacles;
+        let has_energy = obstacles.iter().all(|obstacle| obstacle.motion == Motion::Still);
         Some(Outcome {
             diverged,
             is_finite: state.position.iter().chain(&state.velocity).all(|vector| vector.is_finite()),
             turned_over: d.turned_over,
             shape_error: d.shape_error / self.side,
             unsettled: measured(matches!(self.promise, Promise::Settled(_)), self.unsettled(model, state)?),
-            energy: measured(self.has_energy, most / first.energy),
+            energy: measured(has_energy, most / first.energy),
             momentum: [0, 1].map(|at| {
-                let is_kept = self.is_free && (at == 0 || self.damping == 0.0);
+                let is_kept = obstacles.is_empty() && (at == 0 || self.damping == 0.0);
                 measured(is_kept && diverged.is_none(), changed[at] / fastest[at].max(f64::MIN_POSITIVE))
             }),
             creep: measured(self.is_still, (last.centre - first.centre).with_y(0.0).length() / self.side),
@@ -221,7 +197,7 @@ impl Trial {
 
     /// The greatest difference of a height from the body at rest on its side, as a part of a side. Heights are compared
     /// in order, so a cube may lie on any side.
-    fn unsettled(&self, model: &NamedModel, state: &State) -> Option<f64> {
+    fn unsettled(&self, model: &Model, state: &State) -> Option<f64> {
         let heights = |state: &State| {
             let mut heights: Vec<_> = state.position.iter().map(|at| at.y).collect();
             heights.sort_by(f64::total_cmp);

@@ -14,17 +14,18 @@ impl Results {
             None => Cell::from("does not take it"),
         };
         let row = |row: &Tried| -> Vec<Cell> {
-            let name = Cell::from(row.name.as_str());
+            let name = Cell::from(row.trial.name.as_str());
             [name].into_iter().chain(row.outcomes.iter().map(|one| words(row, one))).collect()
         };
         let table = |group: &[Tried]| {
-            let models = self.models.iter().map(|model| model.name.clone());
-            let table = Table::wide(&[group[0].group], models, group.iter().map(row).collect());
+            let models = self.models.iter().map(|model| model.name.to_owned());
+            let table = Table::wide(&[group[0].trial.group], models, group.iter().map(row).collect());
             table.markdown(table.heads.len())
         };
-        let tables: Vec<_> = self.rows.chunk_by(|one, other| one.group == other.group).map(table).collect();
+        let tables: Vec<_> = self.rows.chunk_by(|one, other| one.trial.group == other.trial.group).map(table).collect();
         let broken = self.rows.iter().filter(|row| !row.broken().is_empty());
-        let broken = broken.map(|row| format!("- {}, {}: {}", row.group, row.name, row.broken().join("; ")));
+        let broken =
+            broken.map(|row| format!("- {}, {}: {}", row.trial.group, row.trial.name, row.broken().join("; ")));
         let promises = match &broken.collect::<Vec<_>>()[..] {
             [] => "The shape model keeps all its promises.".to_owned(),
             broken => format!("Promises that the shape model breaks:\n\n{}", broken.join("\n")),
@@ -35,19 +36,16 @@ impl Results {
     /// All numbers, with all digits.
     pub(super) fn table(&self) -> Table {
         let rows = self.rows.iter().flat_map(|row| {
-            row.outcomes
-                .iter()
-                .zip(&self.models)
-                .filter_map(move |(one, model)| Some((row, one.as_ref()?, &model.name)))
+            row.outcomes.iter().zip(&self.models).filter_map(move |(one, model)| Some((row, one.as_ref()?, model.name)))
         });
         let number = |value: f64| if value.is_nan() { Cell::Empty } else { value.into() };
         Table::of(rows.map(|(row, one, model)| {
             [
-                ("group", row.group.into()),
-                ("trial", row.name.as_str().into()),
-                ("model", model.as_str().into()),
-                ("steps", row.steps.into()),
-                ("elements", row.elements.into()),
+                ("group", row.trial.group.into()),
+                ("trial", row.trial.name.as_str().into()),
+                ("model", model.into()),
+                ("steps", row.trial.steps.into()),
+                ("elements", row.trial.elements().into()),
                 ("diverged_s", one.diverged.into()),
                 ("turned_over", one.turned_over.into()),
                 ("shape_error_sides", number(one.shape_error)),
@@ -68,10 +66,10 @@ impl Tried {
         if let Some(time) = one.diverged {
             return format!("diverged after {} s", size(time));
         }
-        if one.turned_over > 0 && self.promise != Promise::Bounded {
-            return format!("{} of {} turned over ({})", one.turned_over, self.elements, size(one.shape_error));
+        if one.turned_over > 0 && self.trial.promise != Promise::Bounded {
+            return format!("{} of {} turned over ({})", one.turned_over, self.trial.elements(), size(one.shape_error));
         }
-        match self.promise {
+        match self.trial.promise {
             Promise::Restored(most) if one.shape_error <= most => {
                 format!(
                     "{} ({})",

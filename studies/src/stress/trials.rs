@@ -10,6 +10,7 @@ use localshape::sim::{
 use std::sync::Arc;
 
 /// A body and its treatment.
+#[derive(Debug)]
 pub(super) struct Trial {
     pub(super) group: &'static str,
     pub(super) name: String,
@@ -25,12 +26,15 @@ pub(super) struct Trial {
     /// The unit of distances (m).
     pub(super) side: f64,
     pub(super) promise: Promise,
-    /// Whether no work is done on it from outside.
-    pub(super) has_energy: bool,
-    /// Whether no force acts on it from outside.
-    pub(super) is_free: bool,
     /// Whether it is to stay where it is.
     pub(super) is_still: bool,
+}
+
+impl Trial {
+    /// The number of elements of the body.
+    pub(super) fn elements(&self) -> usize {
+        self.body.elements().len()
+    }
 }
 
 /// Acceleration of gravity (m/s²).
@@ -82,8 +86,6 @@ fn free(group: &'static str, name: String, body: Body, start: State, elastic: El
         body: Arc::new(body),
         side,
         promise: if elastic.ratio > 0.0 { Promise::Restored(1e-3) } else { Promise::Bounded },
-        has_energy: true,
-        is_free: true,
         is_still: false,
     }
 }
@@ -97,7 +99,7 @@ fn thrown(group: &'static str, name: String, body: Body, at: DVec3, speed: f64, 
     let velocity = vec![DVec3::Y * -speed; position.len()];
     let trial = free(group, name, body, State::new(position, velocity), elastic, side);
     let around = Surroundings { obstacles: vec![floor(at.y, 0.5, 0.3)], ..trial.around };
-    Trial { around, is_free: false, ..trial }
+    Trial { around, ..trial }
 }
 
 /// Falls onto a floor.
@@ -135,7 +137,7 @@ fn pressed() -> Trial {
     let name = "to a tenth of the height".to_owned();
     let trial = free("Pressed", name, body, State::at_rest(start), elastic, SIDE);
     let around = Surroundings { obstacles: vec![floor(0.0, 0.0, 0.5), plate], ..trial.around };
-    Trial { around, steps: (3.0 / trial.step) as u64, has_energy: false, is_free: false, ..trial }
+    Trial { around, steps: (3.0 / trial.step) as u64, ..trial }
 }
 
 /// Impacts: fast, of every stiffness, damping, distribution of masses, size and place. All but the first differ only in
@@ -252,7 +254,7 @@ fn long(steps: u64) -> [Trial; 2] {
     let name = format!("{steps} steps");
     let rest = free("At rest", name.clone(), body.clone(), start, USUAL, SIDE);
     let around = Surroundings { gravity: DVec3::Y * -GRAVITY, obstacles: vec![floor(0.0, 0.5, 0.3)], ..rest.around };
-    let rest = Trial { around, steps, promise: Promise::Settled(0.01), is_free: false, is_still: true, ..rest };
+    let rest = Trial { around, steps, promise: Promise::Settled(0.01), is_still: true, ..rest };
     let (spin, middle) = (DVec3::new(3.0, 10.0, -5.0), DVec3::splat(SIDE));
     let velocity = body.rest().iter().map(|&rest| spin.cross(rest - middle)).collect();
     let start = State::new(body.rest().to_vec(), velocity);
