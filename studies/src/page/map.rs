@@ -14,7 +14,6 @@
 
 use super::{Area, Colour, MARGIN, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, TEXT, USUAL, write};
 use localshape::picture::{Annotation, Axis, Chart, Diagram, Layer, Name, TextStyle};
-use std::mem::discriminant;
 
 /// One map.
 pub(crate) struct Map {
@@ -24,25 +23,14 @@ pub(crate) struct Map {
     pub(crate) across: Vec<f64>,
     /// The places of its rows, rising and even.
     pub(crate) up: Vec<f64>,
-    /// The cells, column by column from below.
-    pub(crate) cells: Vec<Outcome>,
+    /// How many elements are turned over at the end, column by column from below; `None` where the run diverged.
+    pub(crate) cells: Vec<Option<usize>>,
     /// Heights with numbers at the left and at the right.
     pub(crate) ticks: Vec<(f64, [String; 2])>,
     /// Horizontal lines: their heights and names.
     pub(crate) lines: Vec<(f64, &'static str)>,
     /// The names of its axes: across, at the left and at the right.
     pub(crate) axes: [String; 3],
-}
-
-/// The outcome in a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// No element is turned over at the end.
-    Whole,
-    /// This number of elements is turned over.
-    TurnedOver(usize),
-    /// It diverged.
-    Diverged,
 }
 
 /// The room at both sides of a map, and above it for its names (px).
@@ -63,37 +51,26 @@ const HATCHES: Colour = [0x5a, 0x1f, 0x00];
 const GROUND: Colour = [0xfb, 0xfb, 0xfa];
 const LABEL: TextStyle = TextStyle { size: 14.5, is_bold: true, colour: TEXT, has_halo: true };
 
-/// The outcomes with their meanings.
-const MEANINGS: [(Outcome, &str); 3] = [
-    (Outcome::Whole, "whole at the end"),
-    (Outcome::TurnedOver(1), "stable, but elements turned over at the end"),
-    (Outcome::Diverged, "diverged"),
+/// A kind of cells: which they are, their meaning, and their colour and hatch. As in pictures of bodies, the hatch replaces the colour in
+/// grey prints.
+type Kind = (fn(Option<usize>) -> bool, &'static str, Colour, Option<Colour>);
+const KINDS: [Kind; 3] = [
+    (|cell| cell == Some(0), "whole at the end", WHOLE, None),
+    (|cell| cell > Some(0), "stable, but elements turned over at the end", TURNED_OVER, Some(HATCHES)),
+    (|cell| cell.is_none(), "diverged", SECOND_TEXT, None),
 ];
 
 /// Draws the meaning of each kind of cell.
 pub(super) fn legend(diagram: &mut Diagram, top: f64) {
     let mut left = MARGIN;
-    for (outcome, text) in MEANINGS {
+    for (_, text, colour, diagonal) in KINDS {
         let axis = Axis::linear([0.0, 1.0], Vec::new());
-        let layers = vec![outcome.layer(vec![[0.5; 2]], [1, 1])];
+        let layers = vec![Layer::Tiles { points: vec![[0.5; 2]], counts: [1, 1], colour, diagonal }];
         let chart = Chart { x: axis.clone(), y: axis, layers, annotations: Vec::new() };
         diagram.chart(&chart, [left, top, left + SQUARE, top + SQUARE]);
         left += SQUARE + BESIDE;
         write(diagram, text, USUAL, 0.0, [left, top + 0.5 * SQUARE + MIDDLE * USUAL.size]);
         left += diagram.text_width(text, USUAL) + 3.0 * BESIDE;
-    }
-}
-
-impl Outcome {
-    /// Tiles at places in a chart with a number of tiles in a row and in a column.
-    fn layer(self, points: Vec<[f64; 2]>, counts: [usize; 2]) -> Layer {
-        // As in pictures of bodies, the hatch replaces the colour in grey prints.
-        let (colour, diagonal) = match self {
-            Self::Whole => (WHOLE, None),
-            Self::TurnedOver(_) => (TURNED_OVER, Some(HATCHES)),
-            Self::Diverged => (SECOND_TEXT, None),
-        };
-        Layer::Tiles { points, counts, colour, diagonal }
     }
 }
 
@@ -112,10 +89,9 @@ impl Map {
         let Some((x, y)) = ends(&logarithms).zip(ends(&self.up)) else { return };
         let (x, counts) = (x.map(libm::exp10), [self.across.len(), self.up.len()]);
         let at = |number: usize| [self.across[number / counts[1]], self.up[number % counts[1]]];
-        let tiles = MEANINGS.map(|(outcome, _)| {
-            let is_alike = |other: &Outcome| discriminant(other) == discriminant(&outcome);
-            let alike = self.cells.iter().enumerate().filter(|(_, other)| is_alike(other));
-            outcome.layer(alike.map(|(number, _)| at(number)).collect(), counts)
+        let tiles = KINDS.map(|(is_kind, _, colour, diagonal)| {
+            let alike = self.cells.iter().enumerate().filter(|(_, cell)| is_kind(**cell));
+            Layer::Tiles { points: alike.map(|(number, _)| at(number)).collect(), counts, colour, diagonal }
         });
         let limits = self.lines.iter().enumerate().flat_map(|(number, &(height, _))| {
             let points = x.map(|end| [end, height]).to_vec();

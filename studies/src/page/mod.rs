@@ -3,7 +3,7 @@
 mod map;
 mod plot;
 
-pub(crate) use map::{Map, Outcome};
+pub(crate) use map::Map;
 pub(crate) use plot::{Line, Plot};
 
 use image::ImageFormat;

@@ -8,7 +8,6 @@
 mod page;
 mod text;
 
-use crate::page::Outcome;
 use crate::study::{Findings, Study, Watch, built_in, each};
 use localshape::Scene;
 use localshape::scene::{Run, description};
@@ -113,7 +112,8 @@ pub(crate) struct MapCell {
     pub(crate) share: f64,
     /// Time step (s).
     pub(crate) step: f64,
-    pub(crate) outcome: Outcome,
+    /// The number of elements that are turned over at the end; `None` if it diverged.
+    pub(crate) turned_over: Option<usize>,
 }
 
 /// The common values of the cells of a run with one damping ratio.
@@ -179,12 +179,12 @@ pub(crate) fn measure(study: &Stability, watch: &Watch<'_>) -> Option<Results> {
         damping: axes.damping,
         share,
         step: share * axes.unit / stiffness.sqrt(),
-        outcome: Outcome::Whole,
+        turned_over: None,
     };
     let mut cells: Vec<_> = columns.flat_map(|column| shares.iter().map(move |&share| cell(column, share))).collect();
-    let outcomes = each(&cells, watch, |cell| outcome(scene, cell, watch))?;
-    for (cell, outcome) in cells.iter_mut().zip(outcomes) {
-        cell.outcome = outcome?;
+    let found = each(&cells, watch, |cell| turned_over(scene, cell, watch))?;
+    for (cell, found) in cells.iter_mut().zip(found) {
+        cell.turned_over = found?;
     }
     Some(Results { study: study.clone(), axes, cells })
 }
@@ -197,8 +197,8 @@ fn scaled(run: &Run, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticMode
     parameters.resolve(body, springs).ok()
 }
 
-/// Simulates a cell, until it diverges; `None` if `watch` stops it.
-fn outcome(scene: &Scene, cell: &MapCell, watch: &Watch<'_>) -> Option<Outcome> {
+/// Simulates a cell, until it diverges, and tells how many elements are then turned over; the outer `None` if `watch` stops it.
+fn turned_over(scene: &Scene, cell: &MapCell, watch: &Watch<'_>) -> Option<Option<usize>> {
     /// Steps between two checks.
     const STRETCH: u64 = 4096;
     let mut scene = scene.clone();
@@ -217,13 +217,8 @@ fn outcome(scene: &Scene, cell: &MapCell, watch: &Watch<'_>) -> Option<Outcome> 
             return None;
         }
     }
-    Some(match world.status() {
-        Status::Diverged(_) => Outcome::Diverged,
-        Status::Ok => match world.some_diagnostics(&[Diagnostic::TurnedOver]).turned_over {
-            0 => Outcome::Whole,
-            count => Outcome::TurnedOver(count),
-        },
-    })
+    let count = || world.some_diagnostics(&[Diagnostic::TurnedOver]).turned_over;
+    Some((world.status() == Status::Ok).then(count))
 }
 
 impl Results {
@@ -248,9 +243,9 @@ impl Results {
         [run.name.clone(), conditions.join(", "), description(run.models[0].as_ref(), run.body())]
     }
 
-    /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.
-    fn up_to(&self, axes: &Axes, speed: f64, is_good: impl Fn(Outcome) -> bool) -> f64 {
-        let bad = self.of(axes, speed).filter(|cell| !is_good(cell.outcome)).map(|cell| cell.share);
+    /// The largest share up to which every step, with every stiffness, has a good number of elements that are turned over; 0 for none.
+    fn up_to(&self, axes: &Axes, speed: f64, is_good: impl Fn(Option<usize>) -> bool) -> f64 {
+        let bad = self.of(axes, speed).filter(|cell| !is_good(cell.turned_over)).map(|cell| cell.share);
         let least = bad.fold(f64::INFINITY, f64::min);
         self.study.shares.iter().copied().filter(|&share| share < least).fold(0.0, f64::max)
     }

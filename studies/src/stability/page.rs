@@ -21,7 +21,7 @@ impl Results {
                 name: [name, if conditions.is_empty() { model } else { conditions }],
                 across,
                 up: self.study.shares.clone(),
-                cells: cells.iter().map(|cell| cell.outcome).collect(),
+                cells: cells.iter().map(|cell| cell.turned_over).collect(),
                 ticks: TICKS.map(tick).into(),
                 lines: limit.into_iter().chain(stretched).collect(),
                 axes: [

@@ -1,43 +1,24 @@
 //! The results as text and as a table.
 
-use super::{Axes, MapCell, Outcome, Results, Stability};
+use super::{Axes, MapCell, Results, Stability};
 use crate::table::{Table, or_dash};
 use localshape::internals::typed;
-
-impl Outcome {
-    /// In words, as in tables.
-    fn words(self) -> &'static str {
-        match self {
-            Self::Whole => "whole",
-            Self::TurnedOver(_) => "turned over",
-            Self::Diverged => "diverged",
-        }
-    }
-
-    /// The number of elements turned over at the end.
-    fn turned_over(self) -> Option<usize> {
-        match self {
-            Self::Whole => Some(0),
-            Self::TurnedOver(count) => Some(count),
-            Self::Diverged => None,
-        }
-    }
-}
 
 impl Results {
     /// The results as text.
     pub(super) fn text(&self) -> String {
         let row = |(axes, speed): (&Axes, f64)| {
             let [name, conditions, model] = self.words(axes, speed);
-            let up_to =
-                |is_good: fn(Outcome) -> bool| Some(self.up_to(axes, speed, is_good)).filter(|&share| share > 0.0);
+            let up_to = |is_good: fn(Option<usize>) -> bool| {
+                Some(self.up_to(axes, speed, is_good)).filter(|&share| share > 0.0)
+            };
             [
                 ("run", name.into()),
                 ("model", if conditions.is_empty() { model } else { format!("{conditions}, {model}") }.into()),
                 ("predicted limit", or_dash(axes.limit.map(|limit| format!("T/{}", short(1.0 / limit))))),
                 ("stretched springs", or_dash(axes.stretched.map(short))),
-                ("none diverges up to", or_dash(up_to(|outcome| outcome != Outcome::Diverged).map(short))),
-                ("all are whole up to", or_dash(up_to(|outcome| outcome == Outcome::Whole).map(short))),
+                ("none diverges up to", or_dash(up_to(|turned_over| turned_over.is_some()).map(short))),
+                ("all are whole up to", or_dash(up_to(|turned_over| turned_over == Some(0)).map(short))),
             ]
         };
         let Stability { stiffnesses, .. } = &self.study;
@@ -62,6 +43,11 @@ impl Results {
         let row = |cell: &MapCell| {
             let run = &self.study.scene.runs[cell.run];
             let axes = self.axes.iter().find(|axes| axes.run == cell.run && axes.damping == cell.damping);
+            let outcome = match cell.turned_over {
+                Some(0) => "whole",
+                Some(_) => "turned over",
+                None => "diverged",
+            };
             let has_limit = axes.is_some_and(|axes| axes.limit.is_some());
             [
                 ("run", run.name.as_str().into()),
@@ -72,8 +58,8 @@ impl Results {
                 ("step_s", cell.step.into()),
                 ("step_over_limit", has_limit.then_some(cell.share).into()),
                 ("step_over_cycle", (cell.step * cell.rate.sqrt() / std::f64::consts::TAU).into()),
-                ("outcome", cell.outcome.words().into()),
-                ("turned_over", cell.outcome.turned_over().into()),
+                ("outcome", outcome.into()),
+                ("turned_over", cell.turned_over.into()),
             ]
         };
         Table::of(self.cells.iter().map(row))

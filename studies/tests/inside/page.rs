@@ -8,9 +8,7 @@ fn all_is_on_the_page() {
         name: ["A run".to_owned(), "what it is of, ".repeat(20)],
         across: (0..columns).map(|at| libm::exp10(3.0 + at as f64 / 4.0)).collect(),
         up: (0..rows).map(|at| 0.05 + 0.1 * at as f64).collect(),
-        cells: (0..columns * rows)
-            .map(|at| [Outcome::Whole, Outcome::TurnedOver(1), Outcome::Diverged][at % 3])
-            .collect(),
+        cells: (0..columns * rows).map(|at| [Some(0), Some(1), None][at % 3]).collect(),
         ticks: vec![(0.5, ["0.5".to_owned(), "T/18".to_owned()])],
         lines: vec![(1.0, "predicted limit"), (0.7, "stretched")],
         axes: ["k/m (1/s²)", "share", "step"].map(str::to_owned),
