@@ -9,6 +9,7 @@ use super::{
     DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, Whose, is_folder, read_file,
     read_tags,
 };
+use crate::reading::beside::{entries, name_of};
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -60,15 +61,109 @@ impl Folder {
 
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
-        let mut found = Found::in_folder(&self.path, &self.scene, &self.manifest)?;
+        let owner = Owner::read(&self.path, &self.scene)?;
+        let owner = owner.as_ref();
+        let found = self.others(owner)?;
         let Access { overwrite, follows, resume, shard } = self.access;
-        if found.hindrance.is_none() && !resume && !shard && Checkpoint::is_in(&self.path) {
-            found.hindrance = Some("the checkpoint of an interrupted command, from which --resume goes on".to_owned());
+        let greatest = found.iter().map(|(kind, _)| kind).max();
+        let mut hindrance = greatest.map(|kind| self.words(owner, kind, &found));
+        if hindrance.is_none() && !resume && !shard && Checkpoint::is_in(&self.path) {
+            hindrance = Some("the checkpoint of an interrupted command, from which --resume goes on".to_owned());
         }
-        let may_replace = !shard && (overwrite || follows && found.is_other_version);
-        match &found.hindrance {
-            Some(what) if !may_replace => Err(OutputError::Occupied { path: self.path.clone(), what: what.clone() }),
-            _ => Ok(found),
+        let is_other_version = greatest.is_none_or(|kind| *kind == Kind::Version);
+        if let Some(what) = hindrance.clone().filter(|_| shard || !(overwrite || follows && is_other_version)) {
+            return Err(OutputError::Occupied { path: self.path.clone(), what });
+        }
+        let stale = found.into_iter().filter(|(kind, _)| *kind != Kind::Foreign).map(|(_, file)| file);
+        let mut stale: Vec<_> = stale.collect();
+        stale.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
+        Ok(Found { stale, hindrance, has_summary: owner.is_some_and(|owner| owner.kind.is_none()) })
+    }
+
+    /// The files in the folder with names of output files that are not this scene's.
+    fn others(&self, owner: Option<&Owner>) -> Result<Vec<(Kind, PathBuf)>, OutputError> {
+        let mut found = Vec::new();
+        for path in entries(&self.path).map_err(OutputError::reading(&self.path))? {
+            let name = name_of(&path);
+            let is_record = [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name.as_str());
+            if is_record || frame_number(&name).is_some() {
+                found.extend(self.kind_of(owner, &path, is_record)?.map(|kind| (kind, path)));
+            }
+        }
+        let earlier = owner.map(|_| export::patterns_in(&self.path)).unwrap_or_default();
+        let own = &self.manifest.files;
+        let earlier = earlier.iter().filter(|pattern| !own.contains(pattern));
+        for (pattern, is_own) in own.iter().map(|one| (one, true)).chain(earlier.map(|one| (one, false))) {
+            for file in export::matching(&self.path, pattern) {
+                let foreign = is_own.then_some(Kind::Foreign);
+                let kind = export::scene_of(&file)?.map_or(foreign, |digest| self.kind(owner, &digest));
+                found.extend(kind.map(|kind| (kind, file)));
+            }
+        }
+        Ok(found)
+    }
+
+    /// The kind of results with this digest; `None` if they are this scene's.
+    fn kind(&self, owner: Option<&Owner>, digest: &str) -> Option<Kind> {
+        match owner {
+            Some(owner) if owner.digest == digest => owner.kind.clone(),
+            _ => (!self.scene.owns(digest)).then_some(Kind::Other),
+        }
+    }
+
+    /// The kind of a table or summary, or of a frame; `None` if it is this scene's and may stay.
+    fn kind_of(&self, owner: Option<&Owner>, path: &Path, is_record: bool) -> Result<Option<Kind>, OutputError> {
+        match fs::metadata(path) {
+            Ok(kind) if !kind.is_file() => {
+                return Err(OutputError::NoFile { path: path.to_owned(), what: kind_of(&kind) });
+            }
+            Ok(_) => {}
+            // A dangling link can be replaced like a file.
+            Err(_) if path.is_symlink() => return Ok(Some(Kind::Foreign)),
+            Err(error) => return Err(OutputError::reading(path)(error)),
+        }
+        if is_record {
+            return Ok(owner.map_or(Some(Kind::Foreign), |owner| owner.kind.clone()));
+        }
+        let Some((size, tags)) = read_tags(path)?.filter(|(_, tags)| tags.frame().is_some()) else {
+            return Ok(Some(Kind::Foreign));
+        };
+        let kind = tags.scenes.first().map_or(Some(Kind::Foreign), |digest| self.kind(owner, digest));
+        let runs = tags.states.iter().map(|(_, run)| run);
+        let own = self.manifest.kept_size().filter(|_| kind.is_none());
+        Ok(match own.filter(|own| *own != size || !runs.clone().eq(&self.manifest.runs)) {
+            Some(_) => {
+                let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
+                Some(Kind::Unlike(format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "))))
+            }
+            None => kind,
+        })
+    }
+
+    /// The results of the greatest kind among those found, in words.
+    fn words(&self, owner: Option<&Owner>, greatest: &Kind, found: &[(Kind, PathBuf)]) -> String {
+        match greatest {
+            Kind::Other => match owner.filter(|owner| owner.kind.is_some()) {
+                Some(Owner { title, file: Some(file), .. }) => {
+                    format!("the results of another scene (“{title}”, {file})")
+                }
+                Some(Owner { title, .. }) => format!("the results of another scene (“{title}”)"),
+                None => "frames of another scene".to_owned(),
+            },
+            Kind::Foreign => {
+                let below = |file: &PathBuf| file.strip_prefix(&self.path).unwrap_or(file).display().to_string();
+                let foreign = found.iter().filter(|(kind, _)| *kind == Kind::Foreign).map(|(_, file)| below(file));
+                let (first, all) = (foreign.clone().min().unwrap_or_default(), foreign.count());
+                match all {
+                    1 => format!("{first}, which was not written by localshape"),
+                    all => format!("{first} and {} more, which were not written by localshape", all - 1),
+                }
+            }
+            Kind::Unlike(words) => format!("frames of this scene of {words}"),
+            Kind::Version => {
+                let file = self.scene.file.as_ref().and_then(|file| file.file_name()).unwrap_or_default();
+                format!("the results of another version of {}", file.display())
+            }
         }
     }
 
@@ -170,8 +265,6 @@ struct Found {
     stale: Vec<PathBuf>,
     /// Why the folder is refused unless `stale` may be replaced, in words.
     hindrance: Option<String>,
-    /// Whether other versions of the scene's file made all of `stale`.
-    is_other_version: bool,
     /// Whether there is a summary of this scene.
     has_summary: bool,
 }
@@ -189,116 +282,7 @@ enum Kind {
     Other,
 }
 
-/// The scene of a command, its files, and the scene of the summary in the folder.
-struct Claim<'c> {
-    scene: &'c Whose,
-    manifest: &'c Manifest,
-    owner: Option<&'c Owner>,
-    /// The digest of another version of the scene's file, if the summary is of one.
-    version: Option<&'c str>,
-}
-
-impl Claim<'_> {
-    /// The kind of results with this digest; `None` if they are this scene's.
-    fn kind(&self, digest: &str) -> Option<Kind> {
-        match self.version {
-            Some(version) if version == digest => Some(Kind::Version),
-            _ => (!self.scene.owns(digest)).then_some(Kind::Other),
-        }
-    }
-
-    /// The kind of a table or summary, or of a frame; `None` if it is this scene's and may stay.
-    fn kind_of(&self, path: &Path, is_record: bool) -> Result<Option<Kind>, OutputError> {
-        match fs::metadata(path) {
-            Ok(kind) if !kind.is_file() => {
-                return Err(OutputError::NoFile { path: path.to_owned(), what: kind_of(&kind) });
-            }
-            Ok(_) => {}
-            // A dangling link can be replaced like a file.
-            Err(_) if path.is_symlink() => return Ok(Some(Kind::Foreign)),
-            Err(error) => return Err(OutputError::reading(path)(error)),
-        }
-        if is_record {
-            return Ok(self.owner.map_or(Some(Kind::Foreign), |owner| self.kind(&owner.digest)));
-        }
-        let Some((size, tags)) = read_tags(path)?.filter(|(_, tags)| tags.frame().is_some()) else {
-            return Ok(Some(Kind::Foreign));
-        };
-        let kind = tags.scenes.first().map_or(Some(Kind::Foreign), |digest| self.kind(digest));
-        let runs = tags.states.iter().map(|(_, run)| run);
-        let own = self.manifest.kept_size().filter(|_| kind.is_none());
-        Ok(match own.filter(|own| *own != size || !runs.clone().eq(&self.manifest.runs)) {
-            Some(_) => {
-                let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
-                Some(Kind::Unlike(format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "))))
-            }
-            None => kind,
-        })
-    }
-
-    /// The results of the greatest kind among some, in words. Results of other programs are named by their paths below the folder.
-    fn words(&self, greatest: &Kind, mut foreign: Vec<String>) -> String {
-        match greatest {
-            Kind::Other => match self.owner.filter(|owner| !self.scene.owns(&owner.digest)) {
-                Some(Owner { title, file: Some(file), .. }) => {
-                    format!("the results of another scene (“{title}”, {file})")
-                }
-                Some(Owner { title, .. }) => format!("the results of another scene (“{title}”)"),
-                None => "frames of another scene".to_owned(),
-            },
-            Kind::Foreign => {
-                foreign.sort_unstable();
-                match foreign.len() {
-                    1 => format!("{}, which was not written by localshape", foreign[0]),
-                    all => format!("{} and {} more, which were not written by localshape", foreign[0], all - 1),
-                }
-            }
-            Kind::Unlike(words) => format!("frames of this scene of {words}"),
-            Kind::Version => {
-                let file = self.scene.file.as_ref().and_then(|file| file.file_name()).unwrap_or_default();
-                format!("the results of another version of {}", file.display())
-            }
-        }
-    }
-}
-
 impl Found {
-    fn in_folder(path: &Path, scene: &Whose, manifest: &Manifest) -> Result<Self, OutputError> {
-        let owner = Owner::read(&path.join(SUMMARY_FILE))?;
-        let version = owner.as_ref().filter(|owner| !scene.owns(&owner.digest) && owner.is_of_file(scene, path));
-        let version = version.map(|owner| owner.digest.as_str());
-        let claim = Claim { scene, manifest, owner: owner.as_ref(), version };
-        let mut found = Vec::new();
-        for entry in fs::read_dir(path).map_err(OutputError::reading(path))? {
-            let entry = entry.map_err(OutputError::reading(path))?;
-            let name = entry.file_name();
-            let Some(name) = name.to_str() else { continue };
-            let is_record = [SUMMARY_FILE, DIAGNOSTICS_FILE, STATES_FILE].contains(&name);
-            if is_record || frame_number(name).is_some() {
-                found.extend(claim.kind_of(&entry.path(), is_record)?.map(|kind| (kind, entry.path())));
-            }
-        }
-        let earlier = owner.as_ref().map(|_| export::patterns_in(path)).unwrap_or_default();
-        let earlier = earlier.iter().filter(|pattern| !manifest.files.contains(pattern));
-        for (pattern, is_own) in manifest.files.iter().map(|one| (one, true)).chain(earlier.map(|one| (one, false))) {
-            for file in export::matching(path, pattern) {
-                let foreign = is_own.then_some(Kind::Foreign);
-                let kind = export::scene_of(&file)?.map_or(foreign, |digest| claim.kind(&digest));
-                found.extend(kind.map(|kind| (kind, file)));
-            }
-        }
-        let greatest = found.iter().map(|(kind, _)| kind).max();
-        let is_foreign = |kind: &Kind| *kind == Kind::Foreign;
-        let foreign = found.iter().filter(|(kind, _)| is_foreign(kind)).map(|(_, file)| relative(file, path));
-        let hindrance = greatest.map(|kind| claim.words(kind, foreign.collect()));
-        let is_other_version = greatest.is_none_or(|kind| *kind == Kind::Version);
-        let has_summary = owner.as_ref().is_some_and(|owner| scene.owns(&owner.digest));
-        let stale = found.into_iter().filter(|(kind, _)| !is_foreign(kind)).map(|(_, file)| file);
-        let mut stale: Vec<_> = stale.collect();
-        stale.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
-        Ok(Self { stale, hindrance, is_other_version, has_summary })
-    }
-
     /// Removes the stale results from a folder.
     fn remove(&self, folder: &Path) -> Result<(), OutputError> {
         self.stale.iter().try_for_each(|path| remove(path))?;
@@ -309,36 +293,30 @@ impl Found {
     }
 }
 
-/// The path of a file below a folder, as it is told.
-fn relative(file: &Path, folder: &Path) -> String {
-    file.strip_prefix(folder).unwrap_or(file).display().to_string()
-}
-
 /// The scene of a summary.
 #[derive(Debug)]
 struct Owner {
     digest: String,
     title: String,
     file: Option<String>,
-    relative_file: Option<String>,
+    /// The kind of its results; `None` if they are those of the scene of the command.
+    kind: Option<Kind>,
 }
 
 impl Owner {
-    /// Reads the owner from `run.json`; `None` if there is none or another program wrote it.
-    fn read(path: &Path) -> Result<Option<Self>, OutputError> {
-        let Some(bytes) = read_file(path)? else { return Ok(None) };
+    /// Reads the owner from `run.json` in a folder; `None` if there is none or another program wrote it.
+    fn read(folder: &Path, scene: &Whose) -> Result<Option<Self>, OutputError> {
+        let Some(bytes) = read_file(&folder.join(SUMMARY_FILE))? else { return Ok(None) };
         let Ok(summary) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(None) };
         let text = |key: &str| summary["scene"][key].as_str().map(str::to_owned);
-        let ours = summary.get("localshape").is_some();
-        let title = text("title").unwrap_or_default();
-        let (file, relative_file) = (text("file"), text("relative_file"));
-        Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title, file, relative_file }))
-    }
-
-    /// Whether the owner has the same file as a scene. A scene that was moved together with the output `folder` has.
-    fn is_of_file(&self, scene: &Whose, folder: &Path) -> bool {
-        let moved = self.relative_file.as_ref().and_then(|file| folder.join(file).canonicalize().ok());
-        scene.file.is_some() && [self.file.as_ref().map(PathBuf::from), moved].contains(&scene.file)
+        let Some(digest) = text("digest").filter(|_| summary.get("localshape").is_some()) else { return Ok(None) };
+        let file = text("file");
+        // A scene that was moved together with the folder has the same file.
+        let moved = text("relative_file").and_then(|file| folder.join(file).canonicalize().ok());
+        let is_same_file = scene.file.is_some() && [file.as_ref().map(PathBuf::from), moved].contains(&scene.file);
+        let other = if is_same_file { Kind::Version } else { Kind::Other };
+        let kind = (!scene.owns(&digest)).then_some(other);
+        Ok(Some(Self { digest, title: text("title").unwrap_or_default(), file, kind }))
     }
 }
 
