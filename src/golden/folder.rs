@@ -4,6 +4,7 @@ use super::error::ComparisonError;
 use super::record::{RECORD_FILE, Record};
 use super::source::{Pictures, pictures_in};
 use crate::output::{Tags, read_tags};
+use crate::reading::beside::{entries, name_of};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -79,8 +80,7 @@ impl Golden {
 
 /// A file or folder in a folder, except hidden ones.
 fn other_file(folder: &Path) -> Option<String> {
-    let names = std::fs::read_dir(folder).ok()?.flatten();
-    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let names = entries(folder).ok()?.into_iter().map(|path| name_of(&path));
     names.filter(|name| !name.starts_with('.')).min()
 }
 

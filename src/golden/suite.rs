@@ -6,6 +6,7 @@ use super::draw::{Subject, draw};
 use super::drawing::PICTURES;
 use super::folder::Golden;
 use crate::gpu::AdapterChoice;
+use crate::reading::beside::{entries, name_of};
 use crate::scene::Limits;
 use std::collections::BTreeSet;
 use std::io::Write as _;
@@ -161,19 +162,14 @@ impl Suite {
 
     /// Messages about goldens without a scene.
     fn unused(&self) -> Vec<String> {
-        let entries = match std::fs::read_dir(&self.goldens) {
-            Ok(entries) => entries,
+        let paths = match entries(&self.goldens) {
+            Ok(paths) => paths,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Vec::new(),
             Err(error) => return vec![format!("{} cannot be read: {error}", self.goldens.display())],
         };
-        let mut names: Vec<String> = entries
-            .filter_map(|entry| {
-                let path = entry.ok()?.path();
-                let name = path.file_name()?.to_string_lossy().into_owned();
-                let is_golden = path.is_dir() || path.extension().is_some_and(|ending| ending == "png");
-                (is_golden && !name.starts_with('.') && !self.used.contains(&name)).then_some(name)
-            })
-            .collect();
+        let is_golden = |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|ending| ending == "png");
+        let mut names: Vec<String> = paths.iter().filter(|path| is_golden(path)).map(|path| name_of(path)).collect();
+        names.retain(|name| !name.starts_with('.') && !self.used.contains(name));
         names.sort();
         let told = |name: &String| {
             format!(

@@ -2,6 +2,7 @@
 
 use super::OutputError;
 use super::frame_name::frame_number;
+use crate::reading::beside::{entries, name_of};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -38,13 +39,10 @@ impl AtomicFile {
     #[cfg(feature = "render")]
     pub(crate) fn create_anew(path: &Path) -> Result<Self, OutputError> {
         let (folder, prefix) = (folder_of(path), prefix(path));
-        for entry in fs::read_dir(folder).map_err(OutputError::writing(path))? {
-            let entry = entry.map_err(OutputError::reading(folder))?;
-            let is_left = |name: &str| cfg!(unix) && name.starts_with(&prefix) && name.ends_with(SUFFIX);
-            if entry.file_name().to_str().is_some_and(is_left)
-                && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok())
-            {
-                remove(&entry.path())?;
+        let is_left = |name: &str| cfg!(unix) && name.starts_with(&prefix) && name.ends_with(SUFFIX);
+        for hidden in entries(folder).map_err(OutputError::writing(path))? {
+            if is_left(&name_of(&hidden)) && File::open(&hidden).is_ok_and(|file| file.try_lock().is_ok()) {
+                remove(&hidden)?;
             }
         }
         Self::create(path)
@@ -120,18 +118,14 @@ pub(super) fn sync_folder(folder: &Path) {
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.
 pub(super) fn remove_leftovers(folder: &Path, frames: &[u64], alone: bool) -> Result<(), OutputError> {
-    for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
-        let entry = entry.map_err(OutputError::reading(folder))?;
-        let is_meant = |name: &str| frame_of(name).map_or(alone, |frame| frames.contains(&frame));
-        let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX) && is_meant(name);
-        if entry.file_name().to_str().is_some_and(hidden) {
-            match entry.file_type() {
-                Ok(found) if found.is_dir() => {
-                    fs::remove_dir_all(entry.path()).map_err(OutputError::writing(folder))?
-                }
-                Ok(found) if found.is_file() => remove(&entry.path())?,
-                _ => {}
-            }
+    let is_meant = |name: &str| frame_of(name).map_or(alone, |frame| frames.contains(&frame));
+    let is_hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX) && is_meant(name);
+    let all = entries(folder).map_err(OutputError::reading(folder))?;
+    for hidden in all.into_iter().filter(|path| is_hidden(&name_of(path))) {
+        match hidden.symlink_metadata() {
+            Ok(found) if found.is_dir() => fs::remove_dir_all(&hidden).map_err(OutputError::writing(folder))?,
+            Ok(found) if found.is_file() => remove(&hidden)?,
+            _ => {}
         }
     }
     Ok(())

@@ -5,8 +5,8 @@ use super::png::{file, header, pixel_dims, texts_of};
 use super::{
     Compression, DiagnosticsWriter, FrameFolder, OutputError, Tags, encode_print, frame_file_name, write_whole,
 };
+use crate::reading::beside::{entries, name_of};
 use crate::runner::Frame;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -34,13 +34,8 @@ impl FrameFolder<'_> {
 
 /// The numbers and paths of all frames in a folder, by their names, sorted.
 pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
-    let mut frames = Vec::new();
-    for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
-        let entry = entry.map_err(OutputError::reading(folder))?;
-        if let Some(index) = entry.file_name().to_str().and_then(frame_number) {
-            frames.push((index, entry.path()));
-        }
-    }
+    let files = entries(folder).map_err(OutputError::reading(folder))?.into_iter();
+    let mut frames: Vec<_> = files.filter_map(|path| Some((frame_number(&name_of(&path))?, path))).collect();
     frames.sort_unstable();
     Ok(frames)
 }
@@ -96,6 +91,7 @@ pub(crate) fn is_drawn(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_picture_with_one_wrong_bit_or_a_lost_end_is_not_kept() {
