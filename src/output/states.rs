@@ -276,8 +276,7 @@ impl StatesWriter {
             }
         }
         for (run, step) in course.runs.iter().zip(&self.steps) {
-            begin(archive, &format!("{}.step", run.name), "<f8", "()", 8)?;
-            archive.write_all(&step.to_le_bytes())?;
+            put(archive, &format!("{}.step", run.name), "<f8", "()", &step.to_le_bytes())?;
         }
         for mesh in &self.meshes {
             fill_mesh(archive, mesh, self.names.len() > 1)?;
@@ -285,8 +284,7 @@ impl StatesWriter {
         fill_names(archive, &self.names)?;
         let mut bytes = postcard::to_allocvec(&self.origin).expect("plain data");
         bytes.extend(postcard::to_allocvec(&self.written).expect("plain data"));
-        begin(archive, COURSE, "|u1", &format!("({},)", bytes.len()), bytes.len() as u64)?;
-        archive.write_all(&bytes)
+        put(archive, COURSE, "|u1", &format!("({},)", bytes.len()), &bytes)
     }
 }
 
@@ -295,36 +293,28 @@ fn fill_mesh(archive: &mut ZipWriter<BufWriter<&mut File>>, mesh: &Mesh, several
     let Mesh { prefix, bodies, of } = mesh;
     let (body, nodes) = (&**bodies.whole(), bodies.whole().len());
     let name = |array: &str| format!("{prefix}{array}");
-    begin(archive, &name("rest"), "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;
-    body.rest().iter().try_for_each(|rest| archive.write_all(&vector_bytes(rest)))?;
-    begin(archive, &name("mass"), "<f8", &format!("({nodes},)"), 8 * nodes as u64)?;
-    body.mass().iter().try_for_each(|mass| archive.write_all(&mass.to_le_bytes()))?;
+    let rest: Vec<u8> = body.rest().iter().flat_map(vector_bytes).collect();
+    put(archive, &name("rest"), "<f8", &format!("({nodes}, 3)"), &rest)?;
+    let mass: Vec<u8> = body.mass().iter().flat_map(|mass| mass.to_le_bytes()).collect();
+    put(archive, &name("mass"), "<f8", &format!("({nodes},)"), &mass)?;
     fill_lists(archive, &name("elements"), 2, body.elements().iter())?;
     let faces = body.faces();
     let bounds = |&face: &usize| faces.inner[face].is_none() || faces.outer[face].is_none();
     fill_lists(archive, &name("faces"), 3, (0..faces.nodes.len()).filter(bounds).map(|face| &faces.nodes[face]))?;
     if several {
-        begin(archive, &name("body"), "<i8", &format!("({nodes},)"), 8 * nodes as u64)?;
         let places = of.iter().enumerate().flat_map(|(at, &place)| bodies.nodes(at).map(move |_| place as i64));
-        places.into_iter().try_for_each(|place| archive.write_all(&place.to_le_bytes()))?;
+        let places: Vec<u8> = places.flat_map(i64::to_le_bytes).collect();
+        put(archive, &name("body"), "<i8", &format!("({nodes},)"), &places)?;
     }
     Ok(())
 }
 
 /// Writes the names of several bodies: characters of 32 bits, with zeros at the end of shorter names.
-fn fill_names(archive: &mut ZipWriter<BufWriter<&mut File>>, names: &[String]) -> io::Result<()> {
+fn fill_names<'n>(archive: &mut ZipWriter<BufWriter<&mut File>>, names: &'n [String]) -> io::Result<()> {
     let Some(longest) = names.iter().map(|name| name.chars().count()).max() else { return Ok(()) };
-    begin(
-        archive,
-        "bodies",
-        &format!("<U{longest}"),
-        &format!("({},)", names.len()),
-        4 * (longest * names.len()) as u64,
-    )?;
-    names.iter().try_for_each(|name| {
-        let padded = name.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest);
-        archive.write_all(&padded.flat_map(u32::to_le_bytes).collect::<Vec<_>>())
-    })
+    let padded = |name: &'n String| name.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest);
+    let bytes: Vec<u8> = names.iter().flat_map(padded).flat_map(u32::to_le_bytes).collect();
+    put(archive, "bodies", &format!("<U{longest}"), &format!("({},)", names.len()), &bytes)
 }
 
 /// Writes lists of nodes as rows of the same length, at least `least`.
@@ -334,13 +324,22 @@ fn fill_lists<'l>(
     least: usize,
     lists: impl Iterator<Item = &'l [u32]> + Clone,
 ) -> io::Result<()> {
-    let (rows, columns) = lists.clone().fold((0, least), |(rows, most), list| (rows + 1, most.max(list.len())));
-    begin(archive, name, "<i8", &format!("({rows}, {columns})"), 8 * rows * columns as u64)?;
-    for list in lists {
-        let padded = list.iter().map(|&node| node.into()).chain(std::iter::repeat(-1_i64)).take(columns);
-        archive.write_all(&padded.flat_map(i64::to_le_bytes).collect::<Vec<_>>())?;
-    }
-    Ok(())
+    let (rows, columns) = lists.clone().fold((0_usize, least), |(rows, most), list| (rows + 1, most.max(list.len())));
+    let padded = |list: &'l [u32]| list.iter().map(|&node| node.into()).chain(std::iter::repeat(-1_i64)).take(columns);
+    let bytes: Vec<u8> = lists.flat_map(padded).flat_map(i64::to_le_bytes).collect();
+    put(archive, name, "<i8", &format!("({rows}, {columns})"), &bytes)
+}
+
+/// Writes a whole array.
+fn put(
+    archive: &mut ZipWriter<BufWriter<&mut File>>,
+    name: &str,
+    number: &str,
+    shape: &str,
+    bytes: &[u8],
+) -> io::Result<()> {
+    begin(archive, name, number, shape, bytes.len() as u64)?;
+    archive.write_all(bytes)
 }
 
 /// The three coordinates, little-endian.

@@ -62,11 +62,9 @@ impl Cells {
 /// The arrays of cells.
 #[derive(Default)]
 struct CellArrays {
-    connectivity: Vec<u8>,
-    offsets: Vec<u8>,
+    connectivity: Vec<i64>,
+    offsets: Vec<i64>,
     types: Vec<u8>,
-    /// The number of nodes so far.
-    nodes: i64,
     /// The number of faces of a polyhedron, then the number of nodes and the nodes of each face.
     faces: Vec<i64>,
     /// Where the faces of each cell end, -1 for cells whose type tells their faces.
@@ -76,9 +74,8 @@ struct CellArrays {
 impl CellArrays {
     /// Appends a cell of a type of VTK.
     fn push(&mut self, kind: u8, nodes: &[u32]) {
-        self.connectivity.extend(nodes.iter().flat_map(|&node| i64::from(node).to_le_bytes()));
-        self.nodes += nodes.len() as i64;
-        self.offsets.extend(self.nodes.to_le_bytes());
+        self.connectivity.extend(nodes.iter().map(|&node| i64::from(node)));
+        self.offsets.push(self.connectivity.len() as i64);
         self.types.push(kind);
         self.face_offsets.push(-1);
     }
@@ -96,24 +93,16 @@ impl CellArrays {
     }
 
     fn finish(self) -> Cells {
-        let Self { connectivity, offsets, types, faces, face_offsets, .. } = self;
         let mut xml = "<Cells>\n".to_owned();
-        array(&mut xml, "connectivity", "Int64", 1, &connectivity);
-        array(&mut xml, "offsets", "Int64", 1, &offsets);
-        array(&mut xml, "types", "UInt8", 1, &types);
-        if !faces.is_empty() {
-            for (name, numbers) in [("faces", &faces), ("faceoffsets", &face_offsets)] {
-                array(
-                    &mut xml,
-                    name,
-                    "Int64",
-                    1,
-                    &numbers.iter().flat_map(|one| one.to_le_bytes()).collect::<Vec<_>>(),
-                );
-            }
+        integers(&mut xml, "connectivity", &self.connectivity);
+        integers(&mut xml, "offsets", &self.offsets);
+        array(&mut xml, "types", "UInt8", 1, &self.types);
+        if !self.faces.is_empty() {
+            integers(&mut xml, "faces", &self.faces);
+            integers(&mut xml, "faceoffsets", &self.face_offsets);
         }
         xml += "</Cells>\n";
-        Cells { count: types.len(), xml }
+        Cells { count: self.types.len(), xml }
     }
 }
 
@@ -165,6 +154,10 @@ fn array(xml: &mut String, name: &str, kind: &str, components: usize, bytes: &[u
         &format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">");
     BASE64_STANDARD.encode_string([&(bytes.len() as u64).to_le_bytes(), bytes].concat(), xml);
     *xml += "</DataArray>\n";
+}
+
+fn integers(xml: &mut String, name: &str, numbers: &[i64]) {
+    array(xml, name, "Int64", 1, &numbers.iter().flat_map(|one| one.to_le_bytes()).collect::<Vec<_>>());
 }
 
 fn vector_bytes(vectors: &[DVec3]) -> Vec<u8> {
