@@ -3,7 +3,7 @@
 use super::error::ComparisonError;
 use super::keys::ChangedKey;
 use super::record::RECORD_FILE;
-use super::source::{Pictures, Source, pictures_in};
+use super::source::{Pair, Pictures, Source, pictures_in};
 use super::states::{Moved, State, States, moved};
 use super::verdict::{Compared, Verdict};
 use crate::output::{OutputError, Shown, Tags};
@@ -35,8 +35,6 @@ pub(crate) struct Comparison {
     pub(crate) notes: Vec<String>,
     /// The number of states known on both sides, if there is a golden.
     pub(crate) states: Option<usize>,
-    #[serde(skip)]
-    pub(super) sources: Vec<[Option<Source>; 2]>,
     /// The title of its page.
     #[serde(skip)]
     pub(super) title: String,
@@ -58,10 +56,8 @@ impl Comparison {
             Err(source) => Err(OutputError::reading(path)(source).into()),
         };
         let are_folders = [is_folder(expected)?, is_folder(actual)?];
-        let pairs: Vec<(String, [Option<Source>; 2])> = match are_folders {
-            [false, false] => {
-                vec![(name_of(actual), sides.map(|path| Some(Source::File(path.into()))))]
-            }
+        let pairs = match are_folders {
+            [false, false] => [(name_of(actual), sides.map(|path| Some(Source::File(path.into()))))].into(),
             [true, true] => {
                 if let Some(path) = sides.into_iter().find(|path| path.join(RECORD_FILE).exists()) {
                     let path = path.display();
@@ -96,16 +92,15 @@ impl Comparison {
     }
 
     /// Compares pairs of pictures. The name of the actual side is the title.
-    pub(super) fn of_pairs(pairs: Vec<(String, [Option<Source>; 2])>, actual: &Path) -> Self {
-        let read = |(name, sources): &(String, [Option<Source>; 2])| Compared::read(name.clone(), sources);
-        let pictures = match &pairs[..] {
+    pub(super) fn of_pairs(pairs: BTreeMap<String, Pair>, actual: &Path) -> Self {
+        let read = |(name, pair)| Compared::read(name, pair);
+        let pictures = match pairs.len() {
             // Starting threads takes a tenth of the time of a pair.
-            [pair] => vec![read(pair)],
-            pairs => pairs.par_iter().map(read).collect(),
+            1 => pairs.into_iter().map(read).collect(),
+            _ => pairs.into_par_iter().map(read).collect(),
         };
-        let sources = pairs.into_iter().map(|(_, sources)| sources).collect();
         let title = actual.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Self { pictures, sources, title, ..Self::default() }
+        Self { pictures, title, ..Self::default() }
     }
 
     /// Whether everything is as expected.
@@ -168,14 +163,14 @@ impl Comparison {
 }
 
 /// Pictures of two folders by name.
-pub(super) fn paired(expected: Pictures, actual: Pictures) -> Vec<(String, [Option<Source>; 2])> {
-    let mut pairs: BTreeMap<String, [Option<Source>; 2]> = BTreeMap::new();
+pub(super) fn paired(expected: Pictures, actual: Pictures) -> BTreeMap<String, Pair> {
+    let mut pairs: BTreeMap<String, Pair> = BTreeMap::new();
     for (side, pictures) in [expected, actual].into_iter().enumerate() {
         for (name, source) in pictures {
             pairs.entry(name).or_default()[side] = Some(source);
         }
     }
-    pairs.into_iter().collect()
+    pairs
 }
 
 /// The states that pictures record; none if the pictures show several scenes, whose frames cannot be compared.

@@ -10,7 +10,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// A picture that is yet to be read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Source {
     File(PathBuf),
     /// The bytes of a PNG file that was drawn.
@@ -27,6 +27,9 @@ impl Source {
         }
     }
 }
+
+/// The expected picture of a name and the actual one; `None` where there is none.
+pub(super) type Pair = [Option<Source>; 2];
 
 /// The pictures of a side by name.
 pub(super) type Pictures = BTreeMap<String, Source>;

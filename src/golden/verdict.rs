@@ -1,7 +1,7 @@
 //! Verdicts on two pictures: whether the simulation or the drawing changed.
 
 use super::picture::{PictureError, Pixels};
-use super::source::Source;
+use super::source::{Pair, Source};
 use super::tolerance::Distance;
 use crate::output::Tags;
 use serde::{Serialize, Serializer};
@@ -75,11 +75,13 @@ pub(crate) struct Compared {
     /// Whether both pictures record states.
     #[serde(skip)]
     pub(super) tags: [Option<Tags>; 2],
+    #[serde(skip)]
+    pub(super) sources: Pair,
 }
 
 impl Compared {
     /// Reads and compares the pictures of a name.
-    pub(super) fn read(name: String, sources: &[Option<Source>; 2]) -> Self {
+    pub(super) fn read(name: String, sources: Pair) -> Self {
         let [expected, actual] = sources.each_ref().map(|source| source.as_ref().map(Source::bytes));
         let decoded = |file: Result<Cow<'_, [u8]>, PictureError>| Pixels::from_bytes(&file?).map(Arc::new);
         // Most pairs that pass are equal files, which are decoded once.
@@ -106,7 +108,7 @@ impl Compared {
         };
         let tags = pixels.map(|pixels| pixels?.label.clone());
         let frame = tags.iter().flatten().find_map(Tags::frame);
-        Self { name, frame, verdict, runs, distance, note, tags }
+        Self { name, frame, verdict, runs, distance, note, tags, sources }
     }
 }
 

@@ -19,8 +19,8 @@ fn pixels(states: &[&str], change: impl FnOnce(&mut [u8])) -> Pixels {
 fn told(expected: &Pixels, actual: &Pixels) -> (Verdict, String) {
     let (verdict, runs, distance, note) = compare(expected, actual);
     let tags = [&expected.label, &actual.label].map(Clone::clone);
-    let (name, frame) = ("a.png".to_owned(), None);
-    (verdict, Compared { name, frame, verdict, runs, distance, note, tags }.to_string())
+    let (name, frame, sources) = ("a.png".to_owned(), None, [None, None]);
+    (verdict, Compared { name, frame, verdict, runs, distance, note, tags, sources }.to_string())
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn damage_is_reported_for_both_pictures() {
         ([60, 60], &["the expected picture: ", "; the actual picture: "]),
         ([good.len(), good.len() - 1], &["the actual picture: "]),
     ] {
-        let compared = Compared::read("two.png".to_owned(), &lengths.map(memory));
+        let compared = Compared::read("two.png".to_owned(), lengths.map(memory));
         let note = compared.note.expect("it is damaged");
         assert!(compared.verdict == Verdict::Unreadable && words.iter().all(|word| note.contains(word)), "{note}");
     }

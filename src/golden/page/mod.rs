@@ -8,7 +8,6 @@ pub use index::{Listed, index};
 
 use super::comparison::Comparison;
 use super::picture::Pixels;
-use super::source::Source;
 use super::tolerance::{FAINT, STRONG, differences};
 use super::verdict::Compared;
 use crate::output::{Compression, encode};
@@ -64,11 +63,10 @@ impl Comparison {
             let [faint, strong] = picture.distance.map_or([0; 2], |distance| distance.differing);
             (picture.verdict, strong, faint)
         };
-        let mut order: Vec<usize> = (0..self.pictures.len()).collect();
-        order.sort_by_key(|&at| Reverse(how_bad(&self.pictures[at])));
+        let mut order: Vec<&Compared> = self.pictures.iter().collect();
+        order.sort_by_key(|picture| Reverse(how_bad(picture)));
         let (shown, others) = order.split_at(order.len().min(MOST_SHOWN));
-        let pair = |at: &usize| pair(&self.pictures[*at], &self.sources[*at]);
-        let words = |at: &usize| format!("{}: {}", self.pictures[*at].name, self.pictures[*at]);
+        let words = |picture: &&Compared| format!("{}: {picture}", picture.name);
         let mut findings = self.findings();
         if !self.pictures.is_empty() {
             findings.push(self.summary());
@@ -79,15 +77,15 @@ impl Comparison {
             verdict: self.verdict().words().to_owned(),
             findings,
             accept: self.command_to_accept().map(str::to_owned),
-            pictures: shown.par_iter().map(pair).collect(),
+            pictures: shown.par_iter().map(|picture| pair(picture)).collect(),
             others: others.iter().map(words).collect(),
         }
     }
 }
 
-fn pair(picture: &Compared, sources: &[Option<Source>; 2]) -> PicturePair {
+fn pair(picture: &Compared) -> PicturePair {
     // Files that are not pictures are not shown.
-    let read = sources.each_ref().map(|source| {
+    let read = picture.sources.each_ref().map(|source| {
         let bytes = source.as_ref()?.bytes().ok()?;
         Some((Pixels::from_bytes(&bytes).ok()?, bytes))
     });
