@@ -2,7 +2,7 @@
 
 use crate::output::Tags;
 use std::fs::File;
-use std::io::{self, BufRead, Cursor, Read, Seek};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 /// The longest side of a picture (px) and its largest number of pixels: both pictures of a pair are held in memory.
@@ -86,7 +86,7 @@ impl Pixels {
         }
         /// Pixels that need no change.
         const PLAIN: Kind = (png::ColorType::Rgb, png::BitDepth::Eight);
-        let mut decoder = decoder(Cursor::new(file));
+        let mut decoder = decoder(file);
         let info = decoder.read_header_info().map_err(broken)?;
         let ([width, height], kind) = ([info.width, info.height], (info.color_type, info.bit_depth));
         if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
@@ -152,8 +152,15 @@ fn show(line: &[u8], (colour, depth): Kind, white: &mut [u8], black: &mut [u8]) 
 
 /// The bytes of a PNG file.
 pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
-    let mut file = open(path)?;
-    let length = file.metadata()?.len();
+    let found = path.metadata()?;
+    if found.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
+    }
+    // Opening a pipe would block.
+    if !found.is_file() {
+        return Err(PictureError::Foreign);
+    }
+    let (mut file, length) = (File::open(path)?, found.len());
     if length > MOST_BYTES {
         return Err(PictureError::Large(length));
     }
@@ -168,24 +175,12 @@ pub(super) fn file(path: &Path) -> Result<Vec<u8>, PictureError> {
     Ok(bytes)
 }
 
-fn open(path: &Path) -> Result<File, PictureError> {
-    let found = path.metadata()?;
-    if found.is_dir() {
-        return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
-    }
-    // Opening a pipe would block.
-    if !found.is_file() {
-        return Err(PictureError::Foreign);
-    }
-    Ok(File::open(path)?)
-}
-
 /// A decoder that verifies every checksum: a damaged text chunk must not count as a missing one.
-fn decoder<R: BufRead + Seek>(file: R) -> png::Decoder<R> {
+fn decoder(file: &[u8]) -> png::Decoder<Cursor<&[u8]>> {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_adler32(false);
     options.set_skip_ancillary_crc_failures(false);
-    let mut decoder = png::Decoder::new_with_options(file, options);
+    let mut decoder = png::Decoder::new_with_options(Cursor::new(file), options);
     decoder.set_limits(png::Limits { bytes: MOST_BESIDE });
     decoder
 }
