@@ -5,7 +5,7 @@ use super::resolve::{Scenes, share_lines};
 use super::{Column, Row, Sheet};
 use crate::look::Plot;
 use crate::reading::collector::key_path;
-use crate::scene::view::{self, Subject};
+use crate::scene::view;
 use crate::scene::{Scene, SceneError};
 use std::mem::take;
 
@@ -85,8 +85,7 @@ impl Scenes<'_> {
         let Self { report, mut scenes, .. } = self;
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
-            let subjects: Vec<_> = scenes.iter().map(subject).collect();
-            let scales = view::colour(typed, &subjects, "sheet", report).unwrap_or_default();
+            let scales = view::colour(typed, &scenes, "sheet", report).unwrap_or_default();
             scenes.iter_mut().zip(scales).for_each(|(scene, scale)| scene.view.colour = Some(scale));
         }
         let SheetFile { charts, number, from, split, .. } = file;
@@ -154,11 +153,6 @@ impl Scenes<'_> {
             }
         }
     }
-}
-
-/// The scene's part of the input of views.
-fn subject(scene: &Scene) -> Subject<'_> {
-    Subject { bodies: &scene.bodies, gravity: scene.gravity, obstacles: &scene.obstacles, runs: &scene.runs }
 }
 
 /// The last moment of a scene (s).

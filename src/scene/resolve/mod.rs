@@ -31,13 +31,12 @@ use super::file::{BodyFile, Positive, SceneFile, TimeFile};
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
 use super::typed::typed;
-use super::view::Subject;
-use super::{ALL_BODIES, Probe, Run, Scene, SceneBody};
+use super::{ALL_BODIES, Run, Scene, SceneBody};
 use crate::look::{self, FontFiles, View, font};
 use crate::reading::collector::{Collector, Here, key_path};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted};
-use crate::sim::{Contacts, Dimension, Obstacle};
+use crate::sim::Dimension;
 use body::TypedBody;
 use choice::Choice;
 use glam::DVec3;
@@ -65,20 +64,6 @@ pub(super) struct Typed<'a> {
     pub(super) report: &'a Collector<'a>,
 }
 
-/// The physics. A part is `None` if it has a mistake, or depends on a part with one.
-struct Physics {
-    gravity: Option<DVec3>,
-    /// The bodies, and after them the own bodies of recordings.
-    bodies: Option<Vec<SceneBody>>,
-    obstacles: Option<Vec<Obstacle>>,
-    /// `None` also for contact of nodes.
-    contacts: Option<Contacts>,
-    probes: Option<Vec<Probe>>,
-    runs: Option<Vec<Run>>,
-    /// Digests of the files of bodies and runs.
-    files: FileDigests,
-}
-
 impl<'a> Typed<'a> {
     /// The place of a body in the scene: `body`, or `body[1]` among several.
     fn place(&self, body: usize) -> Here<'a> {
@@ -99,45 +84,29 @@ impl<'a> Typed<'a> {
     /// The scene with this name, or `None` after any mistake: first the physics, then the view.
     pub(super) fn resolve(&self, name: &str) -> Option<Scene> {
         let Self { file, report, .. } = *self;
-        let mut physics = self.physics();
-        rest::start(self, &mut physics);
-        let font = self.font();
-        let view = self.view(&physics, font.clone().unwrap_or_default());
-        if let (0, Some(runs)) = (report.total(), &physics.runs) {
-            let fixed = runs.iter().filter(|run| run.tolerance.is_none() && run.recording.is_none());
+        let mut physics = self.physics(name);
+        physics.iter_mut().for_each(|(scene, _)| rest::start(self, scene));
+        let font = self.font().unwrap_or_default();
+        let (mut scene, mut files) = physics?;
+        let view = View::read(&file.view, &scene, font, report);
+        if let Some(view) = &view {
+            let chosen: Vec<_> = file.run.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
+            look::check_runs(&chosen, &view.look.palette(), report);
+        }
+        if report.total() == 0 {
+            let fixed = scene.runs.iter().filter(|run| run.tolerance.is_none() && run.recording.is_none());
             let longest = fixed.fold(0.0, |longest: f64, run| longest.max(run.step));
             obstacles::check_steps(self, longest);
             grips::check_steps(self, longest);
             loads::check_steps(self, longest);
-            file.time.iter().for_each(|time| check_rows(time, runs, report));
+            file.time.iter().for_each(|time| check_rows(time, &scene.runs, report));
         }
-        if report.total() > 0 {
-            return None;
+        scene.view = view.filter(|_| report.total() == 0)?;
+        let FontFiles { regular, semi_bold } = &scene.view.look.font;
+        [files.regular, files.semi_bold] = [regular, semi_bold].map(|font| font.as_deref().map(font::digest));
+        if !file.run.iter().flatten().any(|run| run.has_own_model()) {
+            scene.digest = digest(file, files);
         }
-        let has_own_models = file.run.iter().flatten().any(|run| run.has_own_model());
-        let [regular, semi_bold] = font.map(|FontFiles { regular, semi_bold }| [regular, semi_bold])?;
-        let [regular, semi_bold] = [regular, semi_bold].map(|font| font.map(|bytes| font::digest(&bytes)));
-        let files = FileDigests { regular, semi_bold, ..physics.files };
-        let time = file.time.as_ref()?;
-        let mut scene = Scene {
-            title: file.title.clone().unwrap_or_else(|| name.into()),
-            name: name.into(),
-            file: None,
-            digest: if has_own_models { String::new() } else { digest(file, files) },
-            gravity: physics.gravity?,
-            mass_damping: file.mass_damping(),
-            duration: time.duration,
-            frames_per_second: time.frames_per_second,
-            every: time.every.map(|every| every.0),
-            bodies: physics.bodies?,
-            runs: physics.runs?,
-            obstacles: physics.obstacles?,
-            obstacle_names: obstacles::names(file),
-            contacts: physics.contacts,
-            probes: physics.probes?,
-            view: view?,
-            warnings: Vec::new(),
-        };
         scene.place_runs();
         Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
         if let Some(contacts) = &scene.contacts {
@@ -150,7 +119,9 @@ impl<'a> Typed<'a> {
         Some(Scene { warnings: report.warnings(), ..scene })
     }
 
-    fn physics(&self) -> Physics {
+    /// The scene without a view and a digest, and the digests of the files of its bodies and runs; `None` without bodies or obstacles because of
+    /// mistakes. Other parts with mistakes are empty.
+    fn physics(&self, name: &str) -> Option<(Scene, FileDigests)> {
         let Self { file, flawed, limits, report, .. } = *self;
         let names = self.body_names();
         let choices = choice::resolve(&file.run, file.body.len(), names.as_deref(), report);
@@ -199,7 +170,41 @@ impl<'a> Typed<'a> {
         });
         let (runs, own) = runs.unzip();
         bodies.iter_mut().zip(own).for_each(|(bodies, own)| bodies.extend(own));
-        Physics { gravity, bodies, obstacles, contacts, probes, runs, files }
+        let scene = Scene {
+            gravity: gravity.unwrap_or_default(),
+            bodies: bodies?,
+            runs: runs.unwrap_or_default(),
+            obstacles: obstacles?,
+            contacts,
+            probes: probes.unwrap_or_default(),
+            ..self.bare(name)
+        };
+        Some((scene, files))
+    }
+
+    /// The scene without the parts that are resolved.
+    fn bare(&self, name: &str) -> Scene {
+        let file = self.file;
+        let time = file.time.clone().unwrap_or_default();
+        Scene {
+            title: file.title.clone().unwrap_or_else(|| name.into()),
+            name: name.into(),
+            file: None,
+            digest: String::new(),
+            gravity: DVec3::ZERO,
+            mass_damping: file.mass_damping(),
+            duration: time.duration,
+            frames_per_second: time.frames_per_second,
+            every: time.every.map(|every| every.0),
+            bodies: Vec::new(),
+            runs: Vec::new(),
+            obstacles: Vec::new(),
+            obstacle_names: obstacles::names(file),
+            contacts: None,
+            probes: Vec::new(),
+            view: View::default(),
+            warnings: Vec::new(),
+        }
     }
 
     /// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.
@@ -243,17 +248,6 @@ impl<'a> Typed<'a> {
             Some(checked) => font::read(self.folder, &typed(checked, &key_path!["view", "font"], report)?, report),
             None => Some(FontFiles::default()),
         }
-    }
-
-    /// The view.
-    fn view(&self, physics: &Physics, font: FontFiles) -> Option<View> {
-        let Physics { gravity, bodies, obstacles, runs, .. } = physics;
-        let (runs, gravity) = (runs.as_deref().unwrap_or_default(), gravity.unwrap_or_default());
-        let around = Subject { bodies: bodies.as_ref()?, gravity, obstacles: obstacles.as_ref()?, runs };
-        let view = View::read(&self.file.view, &around, font, self.report)?;
-        let chosen: Vec<_> = self.file.run.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
-        look::check_runs(&chosen, &view.look.palette(), self.report);
-        Some(view)
     }
 }
 

@@ -1,23 +1,19 @@
 //! Runs that start at rest.
 
-use super::{Physics, Typed};
+use super::Typed;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{quoted, short};
 use crate::scene::file::StartFile;
-use crate::scene::{Rest, Run, SceneBody};
+use crate::scene::{Rest, Run, Scene, SceneBody};
 use crate::sim::{Crew, NoEquilibrium, equilibrium};
 use rayon::prelude::*;
 
 /// Moves the bodies of each run to where they are at rest, if the scene asks for it.
-pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics) {
-    let asked = scene.file.time.as_ref().and_then(|time| time.start);
+pub(super) fn start(typed: &Typed<'_>, scene: &mut Scene) {
+    let asked = typed.file.time.as_ref().and_then(|time| time.start);
     // Without a part that has mistakes, rest would be elsewhere.
-    let (Some(StartFile::Equilibrium), 0) = (asked, scene.report.total()) else { return };
-    let Physics { gravity: Some(gravity), obstacles: Some(obstacles), contacts, bodies, runs: Some(runs), .. } =
-        physics
-    else {
-        return;
-    };
+    let (Some(StartFile::Equilibrium), 0) = (asked, typed.report.total()) else { return };
+    let Scene { gravity, obstacles, contacts, bodies, runs, .. } = scene;
     let all = runs.len();
     let find = |run: &Run| {
         let surroundings = run.surroundings((*gravity, 0.0), obstacles, contacts.as_ref());
@@ -28,13 +24,13 @@ pub(super) fn start(scene: &Typed<'_>, physics: &mut Physics) {
     for (run, found) in runs.iter_mut().zip(found) {
         match found {
             Some(Ok(found)) => {
-                warn_of_small_loads(run, found.residual, scene.report);
+                warn_of_small_loads(run, found.residual, typed.report);
                 run.rest = Some(Rest { residual: found.residual, evaluations: found.evaluations });
                 run.placed = Some(std::mem::replace(&mut run.initial.position, found.position));
             }
             Some(Err(why)) => {
                 // Other runs mostly have the same mistake.
-                refuse(run, &why, bodies.as_deref().unwrap_or_default(), scene.report);
+                refuse(run, &why, bodies, typed.report);
                 return;
             }
             None => {}

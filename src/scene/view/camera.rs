@@ -1,11 +1,10 @@
 //! The camera of a view.
 
-use super::subject::Subject;
 use crate::look::{Camera, CameraFile, axes};
 use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::coordinates::vector;
-use crate::scene::SceneBody;
+use crate::scene::{Scene, SceneBody};
 use crate::sim::geometry::is_inside;
 use crate::sim::{Dimension, Obstacle};
 
@@ -14,7 +13,7 @@ const DISTANCE: f64 = 8.5;
 
 impl CameraFile {
     /// The camera of a scene, or `None` after a mistake in its target.
-    pub(super) fn resolve(&self, scene: &Subject<'_>, report: &Collector<'_>) -> Option<Camera> {
+    pub(super) fn resolve(&self, scene: &Scene, report: &Collector<'_>) -> Option<Camera> {
         let dimension = scene.dimension();
         let is_flat = dimension == Dimension::Plane;
         for (key, _) in [("azimuth", self.azimuth), ("elevation", self.elevation)]
@@ -26,13 +25,14 @@ impl CameraFile {
         }
         let angle =
             |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
-        let (low, high) = scene.start();
+        let (low, high) = scene.box_at_start();
         let target = match &self.target {
             Some(target) => vector(target, dimension, &report.here(&key_path!["view", "camera", "target"]))?,
             None => low.midpoint(high),
         };
         // Bodies that start as one point have the size of their rest shapes.
-        let size = Some((high - low).max_element()).filter(|&size| size > 0.0).unwrap_or_else(|| scene.extent());
+        let size =
+            Some((high - low).max_element()).filter(|&size| size > 0.0).unwrap_or_else(|| scene.largest_extent());
         let follow = self.target.is_none() && self.distance.is_none();
         let camera = Camera {
             azimuth: angle(self.azimuth, 31.0),
@@ -41,7 +41,7 @@ impl CameraFile {
             target,
             distance: self.distance.unwrap_or(DISTANCE * size),
             follow,
-            turns: follow && !is_flat && self.azimuth.is_none() && can_hide(scene.obstacles),
+            turns: follow && !is_flat && self.azimuth.is_none() && can_hide(&scene.obstacles),
         };
         let [_, _, towards] = axes(camera.azimuth, camera.elevation);
         let eye = camera.target + camera.distance * towards;

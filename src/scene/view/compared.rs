@@ -1,16 +1,15 @@
 //! Resolves ghosts and paths.
 
-use super::subject::Subject;
 use crate::look::{Ghost, Traced};
 use crate::reading::collector::{Collector, Here, key_path};
 use crate::reading::words::{list, nearest, quoted, short};
-use crate::scene::Run;
+use crate::scene::{Run, Scene};
 
 /// The name for a ghost of the rest shape.
 const REST: &str = "rest";
 
 /// The outline over each body; `None` also after a mistake.
-pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &Collector<'_>) -> Option<Ghost> {
+pub(super) fn ghost(name: &str, scene: &Scene, report: &Collector<'_>) -> Option<Ghost> {
     let here = report.here(&key_path!["view", "ghost"]);
     let run = scene.runs.iter().position(|known| known.name == name);
     match run {
@@ -25,7 +24,7 @@ pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &Collector<'_>) -> 
 }
 
 /// A run whose states are compared with those of all others. `more` are other words in its place.
-pub(super) fn run(name: &str, more: &[&str], here: &Here<'_>, scene: &Subject<'_>) -> Option<usize> {
+pub(super) fn run(name: &str, more: &[&str], here: &Here<'_>, scene: &Scene) -> Option<usize> {
     let run = scene.runs.iter().position(|known| known.name == name);
     let run = run.or_else(|| unknown(name, more, here, scene))?;
     let one = &scene.runs[run];
@@ -38,8 +37,8 @@ pub(super) fn run(name: &str, more: &[&str], here: &Here<'_>, scene: &Subject<'_
 }
 
 /// Reports paths that are listed twice, and nodes that not all runs have.
-pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &Collector<'_>) {
-    let nodes = scene.nodes();
+pub(super) fn check_paths(paths: &[Traced], scene: &Scene, report: &Collector<'_>) {
+    let nodes = scene.nodes_of_runs();
     let (least, most) = (nodes.iter().min().copied().unwrap_or(0), nodes.iter().max().copied().unwrap_or(0));
     for (at, path) in paths.iter().enumerate() {
         let here = report.here(&key_path!["view", "paths", at]);
@@ -61,7 +60,7 @@ pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &Collec
 }
 
 /// Reports an unknown run, unless there are mistakes in the runs themselves.
-fn unknown<T>(name: &str, more: &[&str], here: &Here<'_>, scene: &Subject<'_>) -> Option<T> {
+fn unknown<T>(name: &str, more: &[&str], here: &Here<'_>, scene: &Scene) -> Option<T> {
     if scene.runs.is_empty() {
         return None;
     }

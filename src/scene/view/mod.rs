@@ -9,11 +9,10 @@ use crate::look::print::{SizeFile, TextScaleFile, unit};
 use crate::look::typed::TypedColour;
 use crate::look::{CameraFile, ColourScale, FontFiles, Palette, View, Visible};
 use crate::reading::collector::{Collector, Here, key_path};
-use crate::scene::Run;
+use crate::scene::{Run, Scene};
 use crate::sim::Field;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
-pub(super) use subject::Subject;
 
 /// The shortest side of a picture (px).
 const LEAST_SIDE: u32 = 16;
@@ -37,14 +36,9 @@ fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report:
 
 impl View {
     /// The view of a scene: typed values, and defaults that depend on the scene. `None` after a mistake.
-    pub(super) fn read(
-        typed: &TypedView,
-        scene: &Subject<'_>,
-        font: FontFiles,
-        report: &Collector<'_>,
-    ) -> Option<Self> {
+    pub(super) fn read(typed: &TypedView, scene: &Scene, font: FontFiles, report: &Collector<'_>) -> Option<Self> {
         let (panels, known) = (scene.runs.len(), report.total());
-        let mut view = Self { side: scene.side(), has_cells: scene.has_cells(), ..Self::default() };
+        let mut view = Self { side: scene.mean_side(), has_cells: scene.has_cells(), ..Self::default() };
         view.camera = get::<CameraFile>(typed, "camera", report).unwrap_or_default().resolve(scene, report)?;
         let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
         (view.size, view.print) = size.resolve(LEAST_SIDE, &report.here(&key_path!["view", "size"]))?;
@@ -56,7 +50,7 @@ impl View {
         if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
             view.colour = colour(&typed, std::slice::from_ref(scene), "view", report)?.pop();
         }
-        view.visible = Visible::usual(scene.dimension(), scene.nodes().into_iter().max().unwrap_or(0));
+        view.visible = Visible::usual(scene.dimension(), scene.nodes_of_runs().into_iter().max().unwrap_or(0));
         set(&mut view.visible, typed, "show", report);
         view.visible.surfaces |= view.visible.cage;
         let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
@@ -102,16 +96,16 @@ const NARROWEST: f64 = 1e-9;
 /// The colours of a field in each of some scenes, typed in a table. A range that is not typed follows from the scenes.
 pub(super) fn colour(
     typed: &ColourFile,
-    scenes: &[Subject<'_>],
+    scenes: &[Scene],
     table: &'static str,
     report: &Collector<'_>,
 ) -> Option<Vec<ColourScale>> {
     let here = report.here(&key_path![table, "colour"]);
     let range = match typed.range {
         Some(range) => rising(range, &here.to("range"))?,
-        None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
+        None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest_value(typed.by)))],
     };
-    let mut runs = scenes.iter().flat_map(|scene| scene.runs).peekable();
+    let mut runs = scenes.iter().flat_map(|scene| &scene.runs).peekable();
     if typed.by == Field::ElasticEnergy && runs.peek().is_some() && runs.all(|run| run.models.is_empty()) {
         let message = format!("`{here}.by` is \"elastic-energy\", which no run has");
         here.to("by").wrong(message, "recordings have none; colour by another field, such as \"strain\"");
