@@ -38,22 +38,13 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &Collector<'_>) -
         let name = key.get_ref().as_ref();
         let before = walk.report.total();
         walk.path.push(PathPart::Key(name));
-        // One body is a table, several are an array.
-        let inner = schema["properties"].get(name).map(|inner| alternative(inner, value.get_ref()).unwrap_or(inner));
-        let part = match (inner, value.get_ref()) {
+        let part = match (schema["properties"].get(name), value.get_ref()) {
             (None, _) => {
                 walk.unknown_key(schema, name, key.span(), &[]);
                 Json::Null
             }
-            (Some(inner), DeValue::Array(items)) if inner["type"] == "array" => {
-                walk.lengths(inner, "entries", "entry", items.len(), value.span());
-                // Entries beyond the limit were reported together.
-                let most = inner["maxItems"].as_u64().map_or(items.len(), |most| items.len().min(most as usize));
-                Json::Array(walk.entries(inner, &items[..most]))
-            }
-            (Some(inner), DeValue::Table(table)) if inner["type"] == "object" => {
-                walk.table(inner, table, value.span(), &[])
-            }
+            // The sound parts of these are used.
+            (Some(inner), DeValue::Array(_) | DeValue::Table(_)) => walk.value(inner, value),
             (Some(inner), _) => walk.guarded(inner, value),
         };
         walk.path.pop();
@@ -97,8 +88,10 @@ impl<'p> Walk<'_, 'p> {
     fn entries(&mut self, schema: &Json, items: &'p [Spanned<DeValue<'p>>]) -> Vec<Json> {
         let nothing = Json::Bool(true);
         let inner = schema.get("items").unwrap_or(&nothing);
-        let mut entries = Vec::with_capacity(items.len());
-        for (index, item) in items.iter().enumerate() {
+        // Those beyond the limit were reported together.
+        let most = schema["maxItems"].as_u64().map_or(items.len(), |most| items.len().min(most as usize));
+        let mut entries = Vec::with_capacity(most);
+        for (index, item) in items[..most].iter().enumerate() {
             self.path.push(PathPart::Index(index));
             entries.push(self.guarded(inner, item));
             self.path.pop();
