@@ -8,7 +8,7 @@ use crate::look::Print;
 use crate::output::{Compression, OutputError, encode_print, read_tags};
 use crate::picture::{Composer, Picture, left_out, type_left_out};
 use crate::reading::Mistake;
-use crate::reading::collector::{key_path, mistake};
+use crate::reading::collector::{PathPart, mistake};
 use crate::reading::words::short;
 use crate::render::{RenderError, Renderer};
 use crate::runner::Frame;
@@ -173,8 +173,9 @@ pub fn doubts(scene: &Scene) -> (Vec<Mistake>, Vec<String>) {
         ("camera", ["the body leaves its panel at the start", help].map(str::to_owned))
     });
     let small = too_small(scene, &runs).map(|words| ("size", words));
-    let warning =
-        |(key, [message, help]): (&str, [String; 2])| mistake(None, 0..0, &key_path!["view", key], message, Some(help));
+    let warning = |(key, [message, help]): (&str, [String; 2])| {
+        mistake(None, 0..0, &["view", key].map(PathPart::Key), message, Some(help))
+    };
     (cut.into_iter().chain(small).map(warning).collect(), left_out(scene))
 }
 

@@ -2,7 +2,7 @@
 
 use super::palette::Palette;
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
-use crate::reading::collector::{Collector, PathPart};
+use crate::reading::collector::Collector;
 
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
@@ -12,7 +12,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
     let like_alarm = |colour| too_like(colour, palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };
-        let path = [PathPart::Key("run"), PathPart::Index(at), PathPart::Key("colour")];
+        let here = report.to("run").to(at).to("colour");
         let found = contrast(colour, palette.background);
         if found < LINE_CONTRAST {
             let message = format!(
@@ -29,12 +29,12 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
                     format!("choose another hue; this one, made {towards}, would be similar to turned-over elements")
                 }
             };
-            report.at(&path, message, help);
+            here.wrong(message, help);
         } else if let Some(found) = like_alarm(colour) {
             let alarm = written(palette.alarm);
             let message =
                 format!("`run[{at}].colour` is too similar to the colour of turned-over elements, {alarm}: {found}");
-            report.at(&path, message, "choose another hue, or remove it".to_owned());
+            here.wrong(message, "choose another hue, or remove it");
         }
     }
 }

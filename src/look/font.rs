@@ -1,7 +1,7 @@
 //! Reads the files of fonts.
 
 use crate::reading::beside::bytes;
-use crate::reading::collector::{Collector, PathPart};
+use crate::reading::collector::Collector;
 use crate::reading::words::hexadecimal;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -70,8 +70,8 @@ pub(crate) fn read(folder: &Path, typed: &FontFile, report: &Collector<'_>) -> O
     let one = |key: &str, name: &str| {
         let found = bytes(&folder.join(name), &ENDINGS, LONGEST, "a font", EXPECTED);
         let found = found.and_then(|bytes| check(&bytes).map(|()| Arc::from(bytes)).map_err(|message| (message, None)));
-        let path = [PathPart::Key("view"), PathPart::Key("font"), PathPart::Key(key)];
-        found.map_err(|(message, help)| report.at(&path, format!("`{name}` {message}"), help)).ok()
+        let here = report.to("view").to("font").to(key);
+        found.map_err(|(message, help)| here.wrong(format!("`{name}` {message}"), help)).ok()
     };
     let regular = one("regular", &typed.regular);
     let semi_bold = typed.semi_bold.as_ref().map(|name| one("semi_bold", name));

@@ -73,7 +73,7 @@ impl SizeFile {
     pub(crate) fn resolve(self, least: u32, here: &Here<'_>) -> Option<([u32; 2], Option<Print>)> {
         let print = match self {
             Self::Pixels(size) => return Some((size, None)),
-            Self::Print(print) => Print { at: here.report.position(here.path()), ..print },
+            Self::Print(print) => Print { at: here.position(), ..print },
         };
         let Print { mm, dpi, .. } = print;
         let sides = mm.map(|length| (length / INCH_MM * dpi).round());

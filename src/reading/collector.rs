@@ -5,7 +5,8 @@ use super::{Mistake, Mistakes};
 use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::ops::Range;
-use toml::de::{DeTable, DeValue};
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
 
 /// One step of the path from the root of a file to a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,13 +28,6 @@ impl From<usize> for PathPart<'_> {
         Self::Index(index)
     }
 }
-
-/// A path of keys and indices: `key_path!["run", 1, "model"]`, or `key_path![path; "model"]` to extend `path`.
-macro_rules! key_path {
-    ($($part:expr),+) => { [$($crate::reading::collector::PathPart::from($part)),+] };
-    ($before:expr; $($part:expr),+) => { [&$before[..], &$crate::reading::collector::key_path![$($part),+][..]].concat() };
-}
-pub(crate) use key_path;
 
 /// The remedy of a mistake, as text or none.
 pub(crate) trait Help {
@@ -101,9 +95,14 @@ impl<'t> Collector<'t> {
         self.total.get()
     }
 
-    /// A place in the file.
-    pub(crate) fn here<'a>(&'a self, path: &[PathPart<'a>]) -> Here<'a> {
-        Here { path: path.to_vec(), report: self }
+    /// The whole file.
+    pub(crate) fn root(&self) -> Here<'_> {
+        Here { path: Vec::new(), report: self }
+    }
+
+    /// The place of a key at the top of the file.
+    pub(crate) fn to<'a>(&'a self, key: &'a str) -> Here<'a> {
+        self.root().to(key)
     }
 
     /// Counts a mistake and returns true if no more messages are kept. Otherwise the caller writes the message.
@@ -111,23 +110,6 @@ impl<'t> Collector<'t> {
         let is_full = self.found.borrow().len() >= KEPT;
         self.total.set(self.total.get() + usize::from(is_full));
         is_full
-    }
-
-    /// Whether the file has the key at the end of `path`.
-    pub(crate) fn is_typed(&self, path: &[PathPart<'_>]) -> bool {
-        match path {
-            [before @ .., PathPart::Key(key)] => {
-                table_at(self.root, before).is_some_and(|table| table.contains_key(*key))
-            }
-            _ => false,
-        }
-    }
-
-    /// Line and column of the value at `path`, or of its nearest ancestor in the file. Both are 0 if the command line sets it.
-    pub(crate) fn position(&self, path: &[PathPart<'_>]) -> (usize, usize) {
-        let Some(source) = self.source else { return (0, 0) };
-        let (line, column) = source.position(span_of(self.root, path).start);
-        if source.is_setting(line) { (0, 0) } else { (line, column) }
     }
 
     /// Whether a mistake was found in the line of a byte.
@@ -145,25 +127,9 @@ impl<'t> Collector<'t> {
         }
     }
 
-    /// A mistake in the value at `path`, or in its nearest ancestor in the file.
-    pub(crate) fn at(&self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
-        self.at_span(span_of(self.root, path), path, message.into(), help.text());
-    }
-
-    /// A mistake about the key at the end of `path`, or about the table that lacks it.
-    pub(crate) fn at_key(&self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
-        let (table, key) = match path {
-            [before @ .., PathPart::Key(key)] => (table_at(self.root, before), *key),
-            _ => (None, ""),
-        };
-        let span = table.and_then(|table| table.get_key_value(key)).map(|(key, _)| key.span());
-        self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), path, message.into(), help.text());
-    }
-
-    /// A warning about the value at `path`: allowed, but probably a mistake.
-    pub(crate) fn warn(&self, path: &[PathPart<'_>], message: String, help: impl Help) {
-        let warning = mistake(self.source, span_of(self.root, path), path, message, help.text());
-        self.warned.borrow_mut().push(warning);
+    /// A warning about a span of the text, in the value at `path`: allowed, but probably a mistake.
+    pub(crate) fn warn(&self, span: Range<usize>, path: &[PathPart<'_>], message: String, help: Option<String>) {
+        self.warned.borrow_mut().push(mistake(self.source, span, path, message, help));
     }
 
     /// All warnings, in the order of the text.
@@ -196,7 +162,7 @@ pub(crate) struct Here<'a> {
 impl<'a> Here<'a> {
     /// A key or an entry in it.
     pub(crate) fn to(&self, part: impl Into<PathPart<'a>>) -> Self {
-        Self { path: key_path![self.path; part.into()], report: self.report }
+        Self { path: [&self.path[..], &[part.into()]].concat(), report: self.report }
     }
 
     /// Goes to another entry beside it.
@@ -210,24 +176,43 @@ impl<'a> Here<'a> {
         &self.path
     }
 
-    /// Whether the file has it.
+    /// The key at its end, with its place in the file.
+    fn key(&self) -> Option<&'a Spanned<DeString<'a>>> {
+        let (PathPart::Key(key), before) = self.path.split_last()? else { return None };
+        table_at(self.report.root, before)?.get_key_value(*key).map(|(key, _)| key)
+    }
+
+    /// Whether the file has the key.
     pub(crate) fn is_typed(&self) -> bool {
-        self.report.is_typed(&self.path)
+        self.key().is_some()
+    }
+
+    /// The span of the value, or of its nearest ancestor in the file.
+    fn span(&self) -> Range<usize> {
+        span_of(self.report.root, &self.path)
+    }
+
+    /// Line and column of the value, or of its nearest ancestor in the file. Both are 0 if the command line sets it.
+    pub(crate) fn position(&self) -> (usize, usize) {
+        let Some(source) = self.report.source else { return (0, 0) };
+        let (line, column) = source.position(self.span().start);
+        if source.is_setting(line) { (0, 0) } else { (line, column) }
     }
 
     /// A mistake in the value, or in its nearest ancestor in the file.
     pub(crate) fn wrong(&self, message: impl Into<String>, help: impl Help) {
-        self.report.at(&self.path, message, help);
+        self.report.at_span(self.span(), &self.path, message.into(), help.text());
     }
 
     /// A mistake about the key, or about the table that lacks it.
     pub(crate) fn wrong_key(&self, message: impl Into<String>, help: impl Help) {
-        self.report.at_key(&self.path, message, help);
+        let span = self.key().map_or_else(|| self.span(), Spanned::span);
+        self.report.at_span(span, &self.path, message.into(), help.text());
     }
 
     /// A warning about the value.
     pub(crate) fn warn(&self, message: String, help: impl Help) {
-        self.report.warn(&self.path, message, help);
+        self.report.warn(self.span(), &self.path, message, help.text());
     }
 }
 

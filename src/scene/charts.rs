@@ -3,7 +3,7 @@
 use super::{Scene, SceneBody};
 use crate::look::{Measure, Plot, PlotOf};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{list, nearest, quoted};
 use crate::sim::model::ElasticModel;
@@ -36,7 +36,7 @@ impl Scene {
     /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
     pub(super) fn check_charts(charts: &[Plot], scenes: &[Self], table: &'static str, report: &Collector<'_>) {
         for (index, chart) in charts.iter().enumerate() {
-            let entry = |at: usize| report.here(&key_path![table, "charts", at]);
+            let entry = |at: usize| report.to(table).to("charts").to(at);
             let here = entry(index);
             let found = chart.diagnostic().map_or("the same".to_owned(), |one| quoted(&typed(&one)));
             if let Some(first) = charts[..index].iter().position(|other| other == chart) {

@@ -12,7 +12,7 @@ use super::schema::SCHEMA;
 use super::structure::Checked;
 use super::{Mistake, Mistakes, Scene, structure, syntax};
 use crate::reading::beside::{in_folders, similar};
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Collector;
 use crate::reading::setting::{Setting, Wrong};
 use crate::reading::source::Source;
 #[cfg(feature = "render")]
@@ -199,7 +199,7 @@ pub(super) fn checked<T>(
         None => Collector::new(&source, root.get_ref()),
     };
     if let Some(key) = other.keys.iter().find(|key| root.get_ref().contains_key(**key)) {
-        report.at_key(&key_path![*key], other.message, None);
+        report.to(key).wrong_key(other.message, None);
         return Err(SceneError::Mistakes(report.finish(name)));
     }
     let checked = structure::check(schema, root.get_ref(), &report);

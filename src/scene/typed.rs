@@ -3,7 +3,7 @@
 use super::file::{ContactRule, MassDamping, SceneFile};
 use super::structure::Checked;
 use super::view::TypedView;
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::{Collector, Here};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 use std::slice;
@@ -11,25 +11,25 @@ use std::slice;
 impl SceneFile {
     /// The parts of a checked file that have no mistakes.
     pub(super) fn of(checked: &Checked, report: &Collector<'_>) -> Self {
-        let parts = &checked.parts;
+        let (parts, file) = (&checked.parts, &report.root());
         let body = match parts.get("body") {
-            Some(Json::Array(_)) => entries(parts, "body", report),
-            _ => vec![part(parts, "body", report)],
+            Some(Json::Array(_)) => entries(parts, "body", file),
+            _ => vec![part(parts, "body", file)],
         };
         Self {
-            title: part(parts, "title", report),
-            gravity: part(parts, "gravity", report),
-            mass_damping: part(parts, "mass_damping", report),
-            time: part(parts, "time", report),
+            title: part(parts, "title", file),
+            gravity: part(parts, "gravity", file),
+            mass_damping: part(parts, "mass_damping", file),
+            time: part(parts, "time", file),
             body,
-            run: entries(parts, "run", report),
-            obstacle: entries(parts, "obstacle", report),
-            contact: part(parts, "contact", report),
-            hold: entries(parts, "hold", report),
-            grab: entries(parts, "grab", report),
-            load: entries(parts, "load", report),
-            probe: entries(parts, "probe", report),
-            view: part(parts, "view", report).unwrap_or_default(),
+            run: entries(parts, "run", file),
+            obstacle: entries(parts, "obstacle", file),
+            contact: part(parts, "contact", file),
+            hold: entries(parts, "hold", file),
+            grab: entries(parts, "grab", file),
+            load: entries(parts, "load", file),
+            probe: entries(parts, "probe", file),
+            view: part(parts, "view", file).unwrap_or_default(),
         }
     }
 
@@ -76,25 +76,25 @@ impl SceneFile {
     }
 }
 
-/// The part of a file at a key.
-fn part<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &Collector<'_>) -> Option<T> {
-    typed(parts.get(key)?, &key_path![key], report)
+/// The part of a table at a place in a file that has a key.
+pub(super) fn part<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, table: &Here<'_>) -> Option<T> {
+    typed(parts.get(key)?, &table.to(key))
 }
 
 /// The entries of a list in a file.
-fn entries<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, report: &Collector<'_>) -> Vec<Option<T>> {
+fn entries<T: DeserializeOwned>(parts: &Map<String, Json>, key: &str, file: &Here<'_>) -> Vec<Option<T>> {
     let entries = parts.get(key).and_then(Json::as_array).into_iter().flatten().enumerate();
-    entries.map(|(at, entry)| typed(entry, &key_path![key, at], report)).collect()
+    entries.map(|(at, entry)| typed(entry, &file.to(key).to(at))).collect()
 }
 
-/// A checked value at a path of a file as its type; `None` after a mistake in it.
-pub(super) fn typed<T: DeserializeOwned>(checked: &Json, path: &[PathPart<'_>], report: &Collector<'_>) -> Option<T> {
-    let known = report.total();
+/// A checked value at a place in a file as its type; `None` after a mistake in it.
+fn typed<T: DeserializeOwned>(checked: &Json, here: &Here<'_>) -> Option<T> {
+    let known = here.report.total();
     // A required key may be missing after a mistake. Otherwise the schema has accepted the value, and an error of the
     // types is unexpected.
     let unexpected = |error: serde_json::Error| {
         if known == 0 {
-            report.at(path, error.to_string(), None)
+            here.wrong(error.to_string(), None)
         }
     };
     T::deserialize(checked).map_err(unexpected).ok().filter(|_| !checked.is_null())

@@ -3,7 +3,7 @@
 use super::Forces;
 use super::file::{ForcesFile, NumbersFile};
 use super::resolve::{Scenes, share_lines};
-use crate::reading::collector::{Here, key_path};
+use crate::reading::collector::Here;
 use crate::reading::words::{list, quoted};
 use crate::scene::{Run, Scene, SceneError};
 
@@ -13,7 +13,7 @@ const MOST_NODES: usize = 80;
 impl<'a> Scenes<'a> {
     /// The place of a scene in a diagram of forces.
     fn of_forces(&self, index: usize) -> Here<'a> {
-        self.report.here(&key_path!["forces", "scenes", index])
+        self.report.to("forces").to("scenes").to(index)
     }
 
     /// The diagram of a file; `None` after reporting a mistake.
@@ -38,7 +38,7 @@ impl<'a> Scenes<'a> {
         let compare = file.compare.as_ref().and_then(|name| self.compared(name, &runs));
         if file.notes.len() > runs.len() {
             let message = format!("there are more notes ({}) than runs ({})", file.notes.len(), runs.len());
-            self.report.at(&key_path!["forces", "notes"], message, "expected one for each at most");
+            self.report.to("forces").to("notes").wrong(message, "expected one for each at most");
         }
         let recorded = |scene: &Scene| Some(quoted(&scene.runs.iter().find(|run| run.recording.is_some())?.name));
         if let Some((index, run)) = self.scenes.iter().enumerate().find_map(|(at, scene)| Some((at, recorded(scene)?)))
@@ -51,7 +51,7 @@ impl<'a> Scenes<'a> {
         if file.vectors && (numbers || runs.len() > 1) {
             let message = "vectors are drawn for one run, and without numbers";
             let help = "leave one run in the scenes, and write `numbers = \"none\"`";
-            self.report.at_key(&key_path!["forces", "vectors"], message, help);
+            self.report.to("forces").to("vectors").wrong_key(message, help);
         }
         self.check_units(numbers);
         let mut notes = file.notes;
@@ -65,7 +65,7 @@ impl<'a> Scenes<'a> {
     /// The place of the run with which others are compared among all `runs`; `None` after reporting that there is none. Reports scenes
     /// in which another run has other bodies.
     fn compared(&mut self, name: &str, runs: &[String]) -> Option<usize> {
-        let here = self.report.here(&key_path!["forces", "compare"]);
+        let here = self.report.to("forces").to("compare");
         let place = runs.iter().position(|run| run == name);
         if place.is_none() {
             let (message, help) = self.scenes[0].no_run(name);

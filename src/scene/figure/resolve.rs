@@ -3,7 +3,7 @@
 use super::file::FigureFile;
 use super::{Content, Figure, Forces, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
 use serde::Deserialize;
@@ -37,7 +37,7 @@ pub(super) fn resolve(
                 Some(_) => "both `sheet` and `forces` are given; keep one of them",
                 None => "the figure shows nothing: expected a table `[sheet]` or `[forces]`",
             };
-            report.at(&[], message, None);
+            report.root().wrong(message, None);
             return Ok(None);
         }
     };
@@ -45,11 +45,11 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &report.here(&key_path!["size"])) else { return Ok(None) };
+    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &report.to("size")) else { return Ok(None) };
     if size.iter().any(|&side| side < LEAST_SIDE) {
         let [width, height] = size;
         let message = format!("`size` is {width} × {height}; expected {LEAST_SIDE} to 16384 pixels a side");
-        report.at(&key_path!["size"], message, None);
+        report.to("size").wrong(message, None);
         return Ok(None);
     }
     let unit = match &content {
@@ -60,7 +60,7 @@ pub(super) fn resolve(
         }
     };
     let text_scale = match file.text_scale {
-        Some(typed) => match typed.resolve(print.as_ref(), unit, &report.here(&key_path!["text_scale"])) {
+        Some(typed) => match typed.resolve(print.as_ref(), unit, &report.to("text_scale")) {
             None => return Ok(None),
             times => times,
         },

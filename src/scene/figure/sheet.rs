@@ -4,7 +4,6 @@ use super::file::{ColumnFile, RowFile, SheetFile};
 use super::resolve::{Scenes, share_lines};
 use super::{Column, Row, Sheet};
 use crate::look::Plot;
-use crate::reading::collector::key_path;
 use crate::scene::view;
 use crate::scene::{Scene, SceneError};
 use std::mem::take;
@@ -12,7 +11,7 @@ use std::mem::take;
 impl Scenes<'_> {
     /// The columns of a sheet; `None` after reporting a mistake.
     fn columns(&mut self, file: &mut SheetFile) -> Result<Option<Vec<Column>>, SceneError> {
-        let sheet = self.report.here(&key_path!["sheet"]);
+        let sheet = self.report.to("sheet");
         let before = self.report.total();
         let moment = |&time: &f64| ColumnFile { scene: None, time: Some(time), label: None };
         let wrong = match &file.moments {
@@ -66,14 +65,14 @@ impl Scenes<'_> {
             let [one, two] = [0, other].map(|at| format!("“{}” ends at {} s", self.scenes[at].title, ends[at]));
             let message = format!("charts over several scenes have one axis of time, but {one} and {two}");
             let help = "give the scenes the same duration and frame rate";
-            self.report.at_key(&key_path!["sheet", "charts"], message, help);
+            self.report.to("sheet").to("charts").wrong_key(message, help);
         }
         Scene::check_charts(&file.charts, &self.scenes, "sheet", self.report);
         self.check_times(&file.charts, file.from, file.split, &columns);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.charts.is_empty()) {
-            let path = key_path!["sheet", "row", index, "time"];
+            let time = self.report.to("sheet").to("row").to(index).to("time");
             let message = "charts mark the moments of columns, but here a row has one of its own";
-            self.report.at_key(&path, message, "leave out `sheet.charts`, or give the moments of columns");
+            time.wrong_key(message, "leave out `sheet.charts`, or give the moments of columns");
         }
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
@@ -95,7 +94,7 @@ impl Scenes<'_> {
 
     /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
     fn check_times(&mut self, charts: &[Plot], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
-        let sheet = self.report.here(&key_path!["sheet"]);
+        let sheet = self.report.to("sheet");
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
             if charts.is_empty() {
                 let here = sheet.to(*key);
@@ -121,7 +120,7 @@ impl Scenes<'_> {
 
     /// Whether each cell has a run and a moment.
     fn check_cells(&mut self, rows: &[RowFile], columns: &[Column], are_moments: bool) {
-        let sheet = self.report.here(&key_path!["sheet"]);
+        let sheet = self.report.to("sheet");
         for (index, row) in rows.iter().enumerate() {
             let here = sheet.to("row").to(index);
             for scene in &self.scenes {

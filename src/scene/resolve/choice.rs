@@ -1,6 +1,6 @@
 //! Names of bodies and runs; the bodies of each run, and their models as typed.
 
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
 use crate::reading::words::{list, nearest, quoted};
 use crate::scene::file::{ModelFile, RunFile};
 use crate::scene::in_words;
@@ -32,7 +32,7 @@ pub(super) fn resolve<'a>(
     report: &'a Collector<'a>,
 ) -> Vec<Option<Choice<'a>>> {
     let one = |(at, run): (usize, &'a Option<RunFile>)| {
-        let (run, here) = (run.as_ref()?, report.here(&key_path!["run", at]));
+        let (run, here) = (run.as_ref()?, report.to("run").to(at));
         let of = of(run, count, names, &here);
         let models = match (&run.model, &run.models, &run.states) {
             (Some(model), ..) => Some(vec![TypedModel { model, here: here.to("model") }; of.as_ref()?.len()]),

@@ -4,7 +4,7 @@ use super::Typed;
 use super::choice::{Choice, check_names};
 use super::obstacles::shape_name;
 use crate::reading::captions::quantity;
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
 use crate::reading::words::{count, list, nearest, quoted};
 use crate::scene::file::{BodyFile, PairFile, ShapeFile};
 use crate::scene::{Run, Scene, SceneBody};
@@ -26,7 +26,7 @@ pub(super) fn check_obstacle_names(scene: &Typed<'_>) {
 
 /// Contact of surfaces; `None` for contact of nodes, or after reporting a mistake.
 pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Contacts> {
-    let contact = scene.report.here(&key_path!["contact"]);
+    let contact = scene.report.to("contact");
     if scene.file.meets_by_nodes() {
         check_idle(scene, &contact);
         return None;
@@ -80,7 +80,8 @@ pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &Collector
             let names: Vec<_> = bodies.iter().map(|&body| scene.bodies[body].name.as_str()).collect();
             let names = list(&names, "and", quoted);
             let message = format!("the pair changes nothing, as no run simulates {names}");
-            report.at(&key_path!["contact", "pair", at, "of"], message, "name what is in one run, or remove the pair");
+            let here = report.to("contact").to("pair").to(at).to("of");
+            here.wrong(message, "name what is in one run, or remove the pair");
         }
     }
 }
@@ -188,23 +189,20 @@ pub(super) fn warn_of_breaking(scene: &Scene, report: &Collector<'_>) {
         if !has_extent && run.of.len() < 2 && !run.of.iter().any(meets_itself) {
             continue;
         }
-        let by_name =
-            run.of.iter().map(|&body| key_path!["run", at, "models", scene.bodies[body].name.as_str()].to_vec());
-        let models = by_name.chain([key_path!["run", at, "model"].to_vec()]);
-        for path in models.map(|model| key_path![model; "breaks_at"]) {
-            if !report.is_typed(&path) {
-                continue;
-            }
+        let here = report.to("run").to(at);
+        let by_name = run.of.iter().map(|&body| here.to("models").to(scene.bodies[body].name.as_str()));
+        let models = by_name.chain([here.to("model")]);
+        for place in models.map(|model| model.to("breaks_at")).filter(Here::is_typed) {
             let message =
                 format!("elements of {} break, but the surface that meets others stays whole", quoted(&run.name));
-            report.warn(&path, message, "write contact.rule = \"nodes\" if others shall go through a break");
+            place.warn(message, "write contact.rule = \"nodes\" if others shall go through a break");
         }
     }
 }
 
 /// Warns of steps in which nodes move so far relative to others, or to obstacles, at the speeds of the start and of paths, that features may pass
 /// each other sideways.
-pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &Collector<'_>) {
+pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>) {
     /// The longest way in a step, in cells: above it some facets of blocks that met at random crossed for a few steps (`docs/contact.md`).
     const LONGEST: f64 = 0.5;
     let is_solid = |one: &&Obstacle| !one.shape.is_half_space();
@@ -238,10 +236,7 @@ pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, report: &Collecto
                 "nodes of {} move {way} in a step relative to others, at {speed} {when}, and a cell has {cell}: surfaces may cross sideways",
                 quoted(&run.name)
             );
-            // The run's own step, or that of the scene.
-            let own = key_path!["run", at, "step"];
-            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", "step"] };
-            report.warn(path, message, format!("use a step of at most {most:.3e} s"));
+            typed.of_run(at, "step").warn(message, format!("use a step of at most {most:.3e} s"));
         }
     }
 }
@@ -389,6 +384,6 @@ pub(super) fn check_starts(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
                 format!("move one of them{}; a path can move the obstacle there later", or_separate(overlap, typed))
             }
         };
-        typed.report.at(&key_path!["obstacle", number], message, help);
+        typed.report.to("obstacle").to(number).wrong(message, help);
     }
 }

@@ -3,7 +3,7 @@
 use super::Typed;
 use crate::look::{View, font};
 use crate::reading::captions::rounded;
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Collector;
 use crate::reading::words::{count, ends, quoted, short};
 use crate::scene::file::{MotionPath, Positive, SceneFile, ShapeFile};
 use crate::scene::mesh::longest;
@@ -21,16 +21,16 @@ pub(super) fn warn(scene: &Scene, typed: &Typed<'_>) {
     warn_of_late(scene, typed);
     warn_of_rising_loads(scene, typed);
     warn_of_degrees(scene, typed);
-    warn_of_steps(scene, report);
+    warn_of_steps(scene, typed);
     match &scene.contacts {
-        Some(contacts) => super::contact::warn_of_ways(scene, contacts, report),
+        Some(contacts) => super::contact::warn_of_ways(scene, contacts, typed),
         None => super::contact::warn_of_overlaps(scene, typed),
     }
     super::contact::warn_of_breaking(scene, report);
     warn_of_braked_rotation(scene, report);
     warn_of_sizes(scene, typed);
     if let Some((run, [message, help])) = scene.too_soft() {
-        report.warn(&key_path!["run", run, "model"], message, help);
+        report.to("run").to(run).to("model").warn(message, help);
     }
 }
 
@@ -47,9 +47,9 @@ fn warn_of_unused(scene: &Scene, typed: &Typed<'_>) {
 fn warn_of_missing_letters(scene: &Scene, report: &Collector<'_>) {
     let View { title, caption, clock, look, .. } = &scene.view;
     let around = [("title", title), ("caption", caption), ("clock", clock)];
-    let around = around.into_iter().map(|(key, text)| (report.here(&key_path!["view", key]), text));
+    let around = around.into_iter().map(|(key, text)| (report.to("view").to(key), text));
     let runs = scene.runs.iter().enumerate();
-    let runs = runs.map(|(at, run)| (report.here(&key_path!["run", at, "name"]), &run.name));
+    let runs = runs.map(|(at, run)| (report.to("run").to(at).to("name"), &run.name));
     for (here, text) in around.chain(runs) {
         let missing = font::missing(&look.font, text);
         let letter = |&letter: &char| format!("{} (U+{:04X})", quoted(&letter.to_string()), u32::from(letter));
@@ -79,8 +79,7 @@ fn warn_of_time(scene: &Scene, report: &Collector<'_>) {
     if last == 0 && scene.duration > 0.0 {
         let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
         let message = format!("at {rate} frames per second, {duration} s have only one frame, the start");
-        report.warn(
-            &key_path!["time", "frames_per_second"],
+        report.to("time").to("frames_per_second").warn(
             message,
             // Rounded down, there would be one frame again.
             format!("use at least {} to show the end", ends([0.0, 1.0 / scene.duration])[1]),
@@ -109,7 +108,7 @@ fn warn_of_time(scene: &Scene, report: &Collector<'_>) {
         };
         let message = format!("{steps} steps of all runs × {elements} take about {long} on one processor");
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
-        report.warn(&key_path!["time", "duration"], message, help);
+        report.to("time").to("duration").warn(message, help);
     }
 }
 
@@ -120,7 +119,7 @@ fn warn_of_uneven_rows(scene: &Scene, report: &Collector<'_>) {
     if (rows - rows.round()).abs() > 1e-6 * rows {
         let message = "`time.every` does not divide the time between frames, so that rows of frames repeat the forces of the row before".to_owned();
         let even = 1.0 / (scene.frames_per_second * rows.round().max(1.0));
-        report.warn(&key_path!["time", "every"], message, format!("write every = {}", rounded(even, 12)));
+        report.to("time").to("every").warn(message, format!("write every = {}", rounded(even, 12)));
     }
 }
 
@@ -175,7 +174,7 @@ fn warn_of_degrees(scene: &Scene, typed: &Typed<'_>) {
         ShapeFile::Box { rotation: Some(rotation), .. } => Some((here.to("rotation").to("angle"), rotation.angle)),
         _ => None,
     });
-    let camera = (typed.report.here(&key_path!["view", "camera", "azimuth"]), scene.view.camera.azimuth);
+    let camera = (typed.report.to("view").to("camera").to("azimuth"), scene.view.camera.azimuth);
     for (here, angle) in bodies.chain(obstacles).chain([camera]).filter(|(_, angle)| angle.abs() > TAU) {
         let [turned, degrees] = [angle, rounded(angle.to_radians(), 4)].map(short);
         let message = format!("`{here}` is {turned} rad, more than a whole turn");
@@ -184,14 +183,11 @@ fn warn_of_degrees(scene: &Scene, typed: &Typed<'_>) {
 }
 
 /// Warns of steps near or above the largest stable one, or with which bodies are soft, and of integrators that are never stable.
-fn warn_of_steps(scene: &Scene, report: &Collector<'_>) {
+fn warn_of_steps(scene: &Scene, typed: &Typed<'_>) {
     for run in 0..scene.runs.len() {
         let of_step = scene.near_limit(run).into_iter().chain(scene.softened(run)).map(|doubt| ("step", doubt));
         for (key, [message, help]) in of_step.chain(scene.never_stable(run).map(|doubt| ("integrator", doubt))) {
-            // The run's own, or that of the scene.
-            let own = key_path!["run", run, key];
-            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", key] };
-            report.warn(path, message, help);
+            typed.of_run(run, key).warn(message, help);
         }
     }
 }
@@ -200,7 +196,7 @@ fn warn_of_steps(scene: &Scene, report: &Collector<'_>) {
 fn warn_of_braked_rotation(scene: &Scene, report: &Collector<'_>) {
     for (at, run) in scene.runs.iter().enumerate() {
         if let Some([message, help]) = scene.brakes_rotation(at) {
-            let here = report.here(&key_path!["run", at]);
+            let here = report.to("run").to(at);
             let (own, models) = (here.to("model"), here.to("models"));
             let by_name = run.of.iter().map(|&body| models.to(&*scene.bodies[body].name));
             if !by_name.chain([own.clone()]).any(|model| model.to("damping_of").is_typed()) {
@@ -231,7 +227,7 @@ fn warn_of_sizes(scene: &Scene, typed: &Typed<'_>) {
         }
     }
     for run in 0..scene.runs.len() {
-        let here = typed.report.here(&key_path!["run", run]);
+        let here = typed.report.to("run").to(run);
         // A scale that was given is meant.
         if !here.to("scale").is_typed()
             && let Some([message, help]) = scene.misfits(run)

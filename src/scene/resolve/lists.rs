@@ -215,7 +215,7 @@ mod tests {
     fn hulls_have_another_digest_than_ordered_elements() {
         let root = DeTable::new();
         let report = Collector::of_code(&root);
-        let source = ListSource { body: report.here(&[]), file: None };
+        let source = ListSource { body: report.root(), file: None };
         let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
         let lists = Lists::new(source, Dimension::Space, vec![DVec3::ZERO; 4], elements);
         assert_ne!(lists.digest(), Lists { solids: Solids::Convex, ..lists.clone() }.digest());

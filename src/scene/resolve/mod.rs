@@ -30,10 +30,10 @@ use super::digest::{FileDigests, digest};
 use super::file::{BodyFile, Positive, SceneFile, TimeFile};
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
-use super::typed::typed;
+use super::typed::part;
 use super::{ALL_BODIES, Run, Scene, SceneBody};
 use crate::look::{self, FontFiles, View, font};
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted};
 use crate::sim::Dimension;
@@ -67,8 +67,14 @@ pub(super) struct Typed<'a> {
 impl<'a> Typed<'a> {
     /// The place of a body in the scene: `body`, or `body[1]` among several.
     fn place(&self, body: usize) -> Here<'a> {
-        let all = self.report.here(&key_path!["body"]);
+        let all = self.report.to("body");
         if self.is_list { all.to(body) } else { all }
+    }
+
+    /// The place of a key of a run, or of that of `[time]` if the run has none of its own.
+    fn of_run(&self, run: usize, key: &'static str) -> Here<'a> {
+        let own = self.report.to("run").to(run).to(key);
+        if own.is_typed() { own } else { self.report.to("time").to(key) }
     }
 
     /// The entries of a list that have no mistakes, each with its place.
@@ -77,7 +83,7 @@ impl<'a> Typed<'a> {
         key: &'static str,
         list: &'e [Option<T>],
     ) -> impl Iterator<Item = (Here<'a>, &'e T)> + use<'a, 'e, T> {
-        let here = self.report.here(&key_path![key]);
+        let here = self.report.to(key);
         list.iter().enumerate().filter_map(move |(at, one)| Some((here.to(at), one.as_ref()?)))
     }
 
@@ -142,7 +148,7 @@ impl<'a> Typed<'a> {
         let dimension = self.dimension(&typed);
         let bodies = bodies(typed, &choices, limits);
         let gravity = match (&file.gravity, dimension) {
-            (Some(typed), Some(dimension)) => vector(typed, dimension, &report.here(&key_path!["gravity"])),
+            (Some(typed), Some(dimension)) => vector(typed, dimension, &report.to("gravity")),
             _ => Some(DVec3::ZERO),
         };
         // Where bodies start is not known without all of their keys.
@@ -244,10 +250,10 @@ impl<'a> Typed<'a> {
     /// The fonts of the view, or `None` after a mistake in them.
     fn font(&self) -> Option<FontFiles> {
         let report = self.report;
-        match self.file.view.get("font") {
-            Some(checked) => font::read(self.folder, &typed(checked, &key_path!["view", "font"], report)?, report),
-            None => Some(FontFiles::default()),
+        if !self.file.view.contains_key("font") {
+            return Some(FontFiles::default());
         }
+        font::read(self.folder, &part(&self.file.view, "font", &report.to("view"))?, report)
     }
 }
 
@@ -292,7 +298,7 @@ fn check_frames(time: &TimeFile, report: &Collector<'_>) {
     if number > MOST_FRAMES {
         let most = count(MOST_FRAMES as u128);
         let message = format!("{duration} s at {rate} frames per second make {number:.3e} frames; the most is {most}");
-        report.at(&key_path!["time", "duration"], message, "make `duration` or `frames_per_second` smaller");
+        report.to("time").to("duration").wrong(message, "make `duration` or `frames_per_second` smaller");
     }
 }
 
@@ -307,6 +313,6 @@ fn check_rows(time: &TimeFile, runs: &[Run], report: &Collector<'_>) {
             "{duration} s with a row every {every} s make {number:.3e} rows of all runs and bodies; the most is {most}"
         );
         let help = format!("write every = {:.3e} or more, or make `duration` smaller", duration * all / MOST_ROWS);
-        report.at(&key_path!["time", "every"], message, help);
+        report.to("time").to("every").wrong(message, help);
     }
 }

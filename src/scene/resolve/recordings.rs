@@ -3,7 +3,7 @@
 use super::lists::{ListSource, Lists};
 use super::{Typed, body, mesh};
 use crate::reading::beside::{ending, missing};
-use crate::reading::collector::{Here, key_path};
+use crate::reading::collector::Here;
 use crate::reading::words::{count, hexadecimal, list, nearest};
 use crate::scene::file::{Positive, RunFile, StatesFile, Up};
 use crate::scene::recording::{Archive, Axes, Flaw, Recorded};
@@ -41,7 +41,7 @@ impl<'a> ReadRecording<'a> {
     /// The recording of a run, if it has one; `None` after reporting its mistakes, too.
     pub(super) fn read(scene: &Typed<'a>, at: usize) -> Option<Self> {
         let Typed { folder, limits, report, .. } = *scene;
-        let (run, here) = (scene.file.run[at].as_ref()?, report.here(&key_path!["run", at]));
+        let (run, here) = (scene.file.run[at].as_ref()?, report.to("run").to(at));
         let rate = scene.file.time.as_ref().map_or(1.0, |time| time.frames_per_second);
         let (source, chosen) = run.states.as_ref()?.source(&here);
         let (ListSource { body: place, file: Some((file, _)) }, known) = (&source, report.total()) else { return None };

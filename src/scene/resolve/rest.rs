@@ -1,7 +1,7 @@
 //! Runs that start at rest.
 
 use super::Typed;
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Collector;
 use crate::reading::words::{quoted, short};
 use crate::scene::file::StartFile;
 use crate::scene::{Rest, Run, Scene, SceneBody};
@@ -47,7 +47,7 @@ fn warn_of_small_loads(run: &Run, residual: f64, report: &Collector<'_>) {
         let message = format!(
             "{residual:.0e} of the load is left in the state of rest of {name}: the load is as small as round-off"
         );
-        report.warn(&key_path!["time", "start"], message, "give a larger load, or a softer body");
+        report.to("time").to("start").warn(message, "give a larger load, or a softer body");
     }
 }
 
@@ -66,5 +66,5 @@ fn refuse(run: &Run, why: &NoEquilibrium, bodies: &[SceneBody], report: &Collect
             "hold more nodes, make the load smaller, or remove `start` and let the run come to rest by its damping",
         ),
     };
-    report.at(&key_path!["time", "start"], format!("{name} finds no state of rest: {why}"), help);
+    report.to("time").to("start").wrong(format!("{name} finds no state of rest: {why}"), help);
 }

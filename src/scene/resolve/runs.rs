@@ -8,7 +8,6 @@ use super::recordings::ReadRecording;
 use super::steps::Steps;
 use crate::look::LinePlace;
 use crate::reading::captions;
-use crate::reading::collector::key_path;
 use crate::reading::words;
 use crate::scene::file::RunFile;
 use crate::scene::{ALL_BODIES, Run, SceneBody};
@@ -102,7 +101,7 @@ impl Resolved<'_> {
                         let name = words::quoted(&typed.name);
                         let message =
                             format!("{name} shows a body of its own, which has this name, too, as has another");
-                        self.scene.report.at(&key_path!["run", at, "name"], message, "give the run another name");
+                        self.scene.report.to("run").to(at).to("name").wrong(message, "give the run another name");
                         return None;
                     }
                     let together = together(std::iter::once(&body));
@@ -136,7 +135,7 @@ impl Resolved<'_> {
 
     /// A run with its step; `None` after reporting a mistake.
     fn with_step(self, at: usize, (typed, run): (&RunFile, Run), steps: &Steps<'_>) -> Option<Run> {
-        let here = self.scene.report.here(&key_path!["run", at]);
+        let here = self.scene.report.to("run").to(at);
         let integrator = steps.integrator(typed);
         let (step, tolerance) = steps.of(at, typed, run.recording.as_deref())?;
         let parts = run.models_and_bodies();

@@ -2,7 +2,6 @@
 
 use super::Typed;
 use crate::reading::captions::typed;
-use crate::reading::collector::key_path;
 use crate::reading::words;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
@@ -43,15 +42,13 @@ impl<'a> Steps<'a> {
 
     /// The time step of a run (s), and its tolerance if its integrator chooses its steps; `None` after reporting a mistake.
     pub(super) fn of(&self, at: usize, run: &RunFile, recording: Option<&Recorded>) -> Option<(f64, Option<f64>)> {
-        let (time, integrator, report) = (self.time, self.integrator(run), self.scene.report);
+        let (time, integrator) = (self.time, self.integrator(run));
         if recording.is_none() {
             self.check_use(at, run, integrator)?;
         }
         let frame = 1.0 / time.frames_per_second;
         let recorded = recording.map(|recording| recording.step.unwrap_or(frame / STEPS_OF_FRAME));
-        let (own, shared) = (["step", "states"][usize::from(recorded.is_some())], key_path!["time", "step"]);
-        let own = key_path!["run", at, own];
-        let path = if recorded.is_some() || run.step.is_some() { &own[..] } else { &shared[..] };
+        let here = self.scene.of_run(at, if recorded.is_some() { "states" } else { "step" });
         let tolerance = run.tolerance.or(time.tolerance).unwrap_or(Integrator::TOLERANCE);
         let tolerance = (integrator.is_adaptive() && recorded.is_none()).then_some(tolerance);
         let typed = run.step.as_ref().or(time.step.as_ref()).unwrap_or(&StepFile::DEFAULT);
@@ -65,11 +62,11 @@ impl<'a> Steps<'a> {
             let (limit, of) = self.limits[at];
             let of = self.scene.file.run[of].as_ref()?;
             let (message, help) = no_limit(of, self.integrator(of), limit);
-            report.at(path, message, help);
+            here.wrong(message, help);
             return None;
         };
         if let Some((message, help)) = self.refusal(run, step, recorded.is_some(), tolerance.is_some()) {
-            report.at(path, message, help);
+            here.wrong(message, help);
             return None;
         }
         Some((step, tolerance))
@@ -85,16 +82,16 @@ impl<'a> Steps<'a> {
         if !of_run && (!of_scene || run.integrator.is_some()) {
             return Some(());
         }
-        let place = if of_run { &key_path!["run", at, key][..] } else { &key_path!["time", key] };
+        let place = self.scene.of_run(at, key);
         let name = words::quoted(&typed(&integrator));
         if is_adaptive {
             let help = "give `tolerance` in place of `step`, such as 1e-6";
-            self.scene.report.at(place, format!("{name} chooses its own steps"), help);
+            place.wrong(format!("{name} chooses its own steps"), help);
         } else {
             let has_step = run.step.is_some() || self.time.step.is_some();
             let remedy = if has_step { "remove `tolerance`" } else { "give `step` in its place" };
             let help = format!("{remedy}, or write `integrator = \"dormand-prince\"`");
-            self.scene.report.at(place, format!("{name} has fixed steps and no tolerance"), help);
+            place.wrong(format!("{name} has fixed steps and no tolerance"), help);
         }
         None
     }
@@ -155,7 +152,7 @@ impl<'a> Steps<'a> {
             let message =
                 format!("all runs take steps of {held} s, because of {names}; the others would take {free} s");
             let help = format!("write `step = \"auto\"` for {names} alone, unless all runs need the same step");
-            self.scene.report.warn(&key_path!["time", "step"], message, help);
+            self.scene.report.to("time").to("step").warn(message, help);
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Scenes that end when all runs are at rest.
 
 use super::Typed;
-use crate::reading::collector::key_path;
 use crate::reading::words::{list, quoted, short};
 use crate::scene::file::EndFile;
 use crate::scene::{AtRest, Scene};
@@ -45,7 +44,7 @@ pub(super) fn end(typed: &Typed<'_>, scene: &mut Scene) {
             .collect();
         (!names.is_empty()).then(|| (list(&names, "and", quoted), names.len() == 1))
     };
-    let here = typed.report.here(&key_path!["time", "until"]);
+    let here = typed.report.to("time").to("until");
     if let Some((names, is_one)) = of(true) {
         let message = format!("{names} diverge{} before rest", if is_one { "s" } else { "" });
         here.warn(message, "take shorter steps");

@@ -176,7 +176,7 @@ impl<'p> Walk<'_, 'p> {
         if let Some(control) = text.chars().find(|&c| c.is_control() && !(may_break && c == '\n')) {
             let kind = if may_break { "lines" } else { "one line" };
             let message = format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
-            self.mistake(span, message, None);
+            self.mistake(span.clone(), message, None);
         }
         // Drawn texts have a maximum length; names of files have none.
         let is_drawn = schema.get("maxLength").is_some();
@@ -188,7 +188,7 @@ impl<'p> Walk<'_, 'p> {
             );
             let help =
                 "use Latin, Greek, Cyrillic, Chinese, Japanese or Korean, with accented letters as single characters";
-            self.report.warn(&self.path, message, help.to_owned());
+            self.report.warn(span, &self.path, message, Some(help.to_owned()));
         }
     }
 

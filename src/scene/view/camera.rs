@@ -2,7 +2,7 @@
 
 use crate::look::{Camera, CameraFile, axes};
 use crate::reading::captions::rounded;
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::Collector;
 use crate::reading::coordinates::vector;
 use crate::scene::{Scene, SceneBody};
 use crate::sim::geometry::is_inside;
@@ -21,13 +21,13 @@ impl CameraFile {
             .filter(|(_, value)| is_flat && value.is_some())
         {
             let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
-            report.at_key(&key_path!["view", "camera", key], message, format!("remove `{key}`"));
+            report.to("view").to("camera").to(key).wrong_key(message, format!("remove `{key}`"));
         }
         let angle =
             |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
         let (low, high) = scene.box_at_start();
         let target = match &self.target {
-            Some(target) => vector(target, dimension, &report.here(&key_path!["view", "camera", "target"]))?,
+            Some(target) => vector(target, dimension, &report.to("view").to("camera").to("target"))?,
             None => low.midpoint(high),
         };
         // Bodies that start as one point have the size of their rest shapes.
@@ -53,7 +53,7 @@ impl CameraFile {
             let [x, y, z] = eye.to_array().map(|length| rounded(length, 3));
             let message = format!("the camera is at [{x}, {y}, {z}], inside {} at its start", body.in_words());
             let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
-            report.at(&key_path!["view", "camera"], message, help);
+            report.to("view").to("camera").wrong(message, help);
         }
         Some(camera)
     }

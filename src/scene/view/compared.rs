@@ -1,7 +1,7 @@
 //! Resolves ghosts and paths.
 
 use crate::look::{Ghost, Traced};
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
 use crate::reading::words::{list, nearest, quoted, short};
 use crate::scene::{Run, Scene};
 
@@ -10,7 +10,7 @@ const REST: &str = "rest";
 
 /// The outline over each body; `None` also after a mistake.
 pub(super) fn ghost(name: &str, scene: &Scene, report: &Collector<'_>) -> Option<Ghost> {
-    let here = report.here(&key_path!["view", "ghost"]);
+    let here = report.to("view").to("ghost");
     let run = scene.runs.iter().position(|known| known.name == name);
     match run {
         Some(at) if name == REST => {
@@ -41,7 +41,7 @@ pub(super) fn check_paths(paths: &[Traced], scene: &Scene, report: &Collector<'_
     let nodes = scene.nodes_of_runs();
     let (least, most) = (nodes.iter().min().copied().unwrap_or(0), nodes.iter().max().copied().unwrap_or(0));
     for (at, path) in paths.iter().enumerate() {
-        let here = report.here(&key_path!["view", "paths", at]);
+        let here = report.to("view").to("paths").to(at);
         if paths[..at].contains(path) {
             here.wrong("this path is listed a second time", "remove it");
         }

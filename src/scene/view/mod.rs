@@ -8,7 +8,8 @@ use crate::look::file::{ColourFile, PanelsFile};
 use crate::look::print::{SizeFile, TextScaleFile, unit};
 use crate::look::typed::TypedColour;
 use crate::look::{CameraFile, ColourScale, FontFiles, Palette, View, Visible};
-use crate::reading::collector::{Collector, Here, key_path};
+use crate::reading::collector::{Collector, Here};
+use crate::scene::typed::part;
 use crate::scene::{Run, Scene};
 use crate::sim::Field;
 use serde::de::DeserializeOwned;
@@ -20,16 +21,9 @@ const LEAST_SIDE: u32 = 16;
 /// A `[view]` table as typed, of the right structure.
 pub(super) type TypedView = Map<String, Json>;
 
-/// A value as typed, if there is one.
-fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &Collector<'_>) -> Option<T> {
-    let read = T::deserialize(typed.get(key)?);
-    // The structure of the value is right, so an error is unexpected.
-    read.map_err(|error| report.at(&key_path!["view", key], error.to_string(), None)).ok()
-}
-
-/// Sets a field to the typed value, if there is one.
-fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &Collector<'_>) {
-    if let Some(value) = get(typed, key, report) {
+/// Sets a field to the value at a key of the table as typed, if there is one.
+fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, table: &Here<'_>) {
+    if let Some(value) = part(typed, key, table) {
         *place = value;
     }
 }
@@ -37,23 +31,23 @@ fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report:
 impl View {
     /// The view of a scene: typed values, and defaults that depend on the scene. `None` after a mistake.
     pub(super) fn read(typed: &TypedView, scene: &Scene, font: FontFiles, report: &Collector<'_>) -> Option<Self> {
-        let (panels, known) = (scene.runs.len(), report.total());
+        let (panels, known, here) = (scene.runs.len(), report.total(), &report.to("view"));
         let mut view = Self { side: scene.mean_side(), has_cells: scene.has_cells(), ..Self::default() };
-        view.camera = get::<CameraFile>(typed, "camera", report).unwrap_or_default().resolve(scene, report)?;
-        let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
-        (view.size, view.print) = size.resolve(LEAST_SIDE, &report.here(&key_path!["view", "size"]))?;
-        view.columns = get(typed, "panels", report).map(|arranged| match arranged {
+        view.camera = part::<CameraFile>(typed, "camera", here).unwrap_or_default().resolve(scene, report)?;
+        let size = part(typed, "size", here).unwrap_or(SizeFile::Pixels(view.size));
+        (view.size, view.print) = size.resolve(LEAST_SIDE, &here.to("size"))?;
+        view.columns = part(typed, "panels", here).map(|arranged| match arranged {
             PanelsFile::Columns(columns) => columns as usize,
             PanelsFile::Row => panels.max(1),
             PanelsFile::Column => 1,
         });
-        if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
+        if let Some(typed) = part::<ColourFile>(typed, "colour", here) {
             view.colour = colour(&typed, std::slice::from_ref(scene), "view", report)?.pop();
         }
         view.visible = Visible::usual(scene.dimension(), scene.nodes_of_runs().into_iter().max().unwrap_or(0));
-        set(&mut view.visible, typed, "show", report);
+        set(&mut view.visible, typed, "show", here);
         view.visible.surfaces |= view.visible.cage;
-        let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
+        let text_scale = part(typed, "text_scale", here).unwrap_or(TextScaleFile::Times(view.look.text_scale));
         let usual = view.columns.unwrap_or(panels.clamp(1, 3));
         if let TextScaleFile::Points { .. } = text_scale {
             // Type in points has a fixed arrangement.
@@ -61,31 +55,30 @@ impl View {
         }
         let panel = [view.size[0] / usual as u32, view.size[1] / panels.div_ceil(usual).max(1) as u32];
         let unit = unit(view.size, panel);
-        let here = report.here(&key_path!["view", "text_scale"]);
-        view.look.text_scale = text_scale.resolve(view.print.as_ref(), unit, &here)?;
-        view.look.background = get::<TypedColour>(typed, "background", report).map(|colour| colour.0);
-        set(&mut view.look.theme, typed, "theme", report);
+        view.look.text_scale = text_scale.resolve(view.print.as_ref(), unit, &here.to("text_scale"))?;
+        view.look.background = part::<TypedColour>(typed, "background", here).map(|colour| colour.0);
+        set(&mut view.look.theme, typed, "theme", here);
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
         view.look.font = font;
-        view.clock = get(typed, "clock", report).unwrap_or_else(|| {
+        view.clock = part(typed, "clock", here).unwrap_or_else(|| {
             // A result of another program may begin anywhere.
             let is_released = |run: &Run| run.grips.is_empty() && run.loads.is_empty() && run.recording.is_none();
             let moment = if scene.runs.iter().all(is_released) { "release" } else { "the start" };
             format!("after {moment}")
         });
-        let ghost: Option<String> = get(typed, "ghost", report);
+        let ghost: Option<String> = part(typed, "ghost", here);
         view.ghost = ghost.and_then(|name| compared::ghost(&name, scene, report));
-        set(&mut view.paths, typed, "paths", report);
+        set(&mut view.paths, typed, "paths", here);
         compared::check_paths(&view.paths, scene, report);
-        set(&mut view.title, typed, "title", report);
-        set(&mut view.caption, typed, "caption", report);
+        set(&mut view.title, typed, "title", here);
+        set(&mut view.caption, typed, "caption", here);
         [&mut view.title, &mut view.caption].into_iter().for_each(|text| *text = text.trim().to_owned());
-        set(&mut view.charts, typed, "charts", report);
-        set(&mut view.arrow_scale, typed, "arrow_scale", report);
-        set(&mut view.labels, typed, "labels", report);
-        set(&mut view.shadow, typed, "shadow", report);
-        set(&mut view.floor, typed, "floor", report);
-        set(&mut view.edges, typed, "edges", report);
+        set(&mut view.charts, typed, "charts", here);
+        set(&mut view.arrow_scale, typed, "arrow_scale", here);
+        set(&mut view.labels, typed, "labels", here);
+        set(&mut view.shadow, typed, "shadow", here);
+        set(&mut view.floor, typed, "floor", here);
+        set(&mut view.edges, typed, "edges", here);
         (report.total() == known).then_some(view)
     }
 }
@@ -100,7 +93,7 @@ pub(super) fn colour(
     table: &'static str,
     report: &Collector<'_>,
 ) -> Option<Vec<ColourScale>> {
-    let here = report.here(&key_path![table, "colour"]);
+    let here = report.to(table).to("colour");
     let range = match typed.range {
         Some(range) => rising(range, &here.to("range"))?,
         None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest_value(typed.by)))],
