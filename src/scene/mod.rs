@@ -165,6 +165,13 @@ fn in_words(name: &str) -> String {
     if name.is_empty() { "the body".to_owned() } else { format!("the body {}", quoted(name)) }
 }
 
+/// Names without repetitions, in their order.
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut distinct = Vec::new();
+    names.for_each(|name| distinct.extend((!distinct.contains(&name)).then_some(name)));
+    distinct
+}
+
 impl Scene {
     /// Whether its pictures need a graphics device: bodies in space are lit.
     #[cfg(feature = "render")]
@@ -204,14 +211,8 @@ impl Scene {
             return Vec::new();
         }
         let at = |place: usize| {
-            let mut names: Vec<&str> = Vec::new();
-            for body in self.runs.iter().filter_map(|run| run.of.get(place)) {
-                let name = self.bodies[*body].name.as_str();
-                if !names.contains(&name) {
-                    names.push(name);
-                }
-            }
-            names.join(" / ")
+            let bodies = self.runs.iter().filter_map(|run| run.of.get(place));
+            distinct(bodies.map(|&body| &*self.bodies[body].name)).join(" / ")
         };
         (0..most).map(at).chain(regions.into_iter().map(str::to_owned)).collect()
     }
@@ -223,13 +224,12 @@ impl Scene {
 
     /// The names of the regions of all bodies. Regions of one name have one colour.
     pub(crate) fn names_of_regions(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for name in self.bodies.iter().flat_map(|body| &body.regions).map(|region| region.name.as_str()) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
+        distinct(self.bodies.iter().flat_map(|body| &body.regions).map(|region| &*region.name))
+    }
+
+    /// Whether an obstacle has an extent: all but half-spaces have one.
+    fn has_solids(&self) -> bool {
+        self.obstacles.iter().any(|one| !one.shape.is_half_space())
     }
 
     /// The message and help for an unknown run.

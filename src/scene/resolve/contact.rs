@@ -88,10 +88,9 @@ pub(super) fn check_pairs(scene: &Scene, contacts: &Contacts, report: &Collector
 
 /// Reports thicknesses of bodies whose surface meets nothing: their nodes meet half-spaces.
 pub(super) fn check_idle_thickness(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>) {
-    let has_solids = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
     for (at, (body, own)) in scene.bodies.iter().zip(&contacts.bodies).enumerate() {
         let meets = |run: &Run| run.recording.is_none() && run.of.len() > 1 && run.of.contains(&at);
-        let counts = has_solids || own.itself || body.body.carried().is_some() || scene.runs.iter().any(meets);
+        let counts = scene.has_solids() || own.itself || body.body.carried().is_some() || scene.runs.iter().any(meets);
         if own.thickness.is_some() && !counts {
             let message = format!(
                 "the thickness of {} changes nothing: nothing meets its surface, and floors and plates meet its nodes",
@@ -180,15 +179,15 @@ fn side(scene: &Typed<'_>, name: &str, here: &Here<'_>) -> Option<Side> {
     Some(side)
 }
 
+/// Whether surfaces can meet in a run: those of several bodies, of an obstacle, or of a body with itself.
+fn can_meet(scene: &Scene, run: &Run, contacts: &Contacts) -> bool {
+    run.of.len() > 1 || scene.has_solids() || run.contacts(contacts).bodies.iter().any(|body| body.itself)
+}
+
 /// Warns of models whose elements break, where surfaces can meet.
 pub(super) fn warn_of_breaking(scene: &Scene, report: &Collector<'_>) {
     let Some(contacts) = &scene.contacts else { return };
-    let has_extent = scene.obstacles.iter().any(|one| !one.shape.is_half_space());
-    for (at, run) in scene.runs.iter().enumerate() {
-        let meets_itself = |&body: &usize| contacts.bodies.get(body).is_some_and(|body| body.itself);
-        if !has_extent && run.of.len() < 2 && !run.of.iter().any(meets_itself) {
-            continue;
-        }
+    for (at, run) in scene.runs.iter().enumerate().filter(|(_, run)| can_meet(scene, run, contacts)) {
         let here = report.to("run").to(at);
         let by_name = run.of.iter().map(|&body| here.to("models").to(scene.bodies[body].name.as_str()));
         let models = by_name.chain([here.to("model")]);
@@ -207,14 +206,9 @@ pub(super) fn warn_of_ways(scene: &Scene, contacts: &Contacts, typed: &Typed<'_>
     const LONGEST: f64 = 0.5;
     let is_solid = |one: &&Obstacle| !one.shape.is_half_space();
     let stepped = scene.runs.iter().enumerate().filter(|(_, run)| run.recording.is_none() && run.tolerance.is_none());
-    for (at, run) in stepped {
-        let meets_itself = run.contacts(contacts).bodies.iter().any(|body| body.itself);
-        let solids = scene.obstacles.iter().any(|one| is_solid(&one));
-        if run.of.len() < 2 && !solids && !meets_itself {
-            continue;
-        }
+    for (at, run) in stepped.filter(|(_, run)| can_meet(scene, run, contacts)) {
         // Obstacles that rest are there as well.
-        let speeds = run.initial.velocity.iter().copied().chain(solids.then_some(DVec3::ZERO));
+        let speeds = run.initial.velocity.iter().copied().chain(scene.has_solids().then_some(DVec3::ZERO));
         let [low, high] =
             speeds.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], speed| [low.min(speed), high.max(speed)]);
         let side = run.of.iter().map(|&body| scene.bodies[body].side).fold(f64::INFINITY, f64::min);

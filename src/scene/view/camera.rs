@@ -5,8 +5,8 @@ use crate::reading::captions::rounded;
 use crate::reading::collector::Collector;
 use crate::reading::coordinates::vector;
 use crate::scene::{Scene, SceneBody};
+use crate::sim::Dimension;
 use crate::sim::geometry::is_inside;
-use crate::sim::{Dimension, Obstacle};
 
 /// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
 const DISTANCE: f64 = 8.5;
@@ -41,7 +41,8 @@ impl CameraFile {
             target,
             distance: self.distance.unwrap_or(DISTANCE * size),
             follow,
-            turns: follow && !is_flat && self.azimuth.is_none() && can_hide(&scene.obstacles),
+            // Grounds hide no body, and plates can be seen through.
+            turns: follow && !is_flat && self.azimuth.is_none() && scene.has_solids(),
         };
         let [_, _, towards] = axes(camera.azimuth, camera.elevation);
         let eye = camera.target + camera.distance * towards;
@@ -57,9 +58,4 @@ impl CameraFile {
         }
         Some(camera)
     }
-}
-
-/// Whether obstacles can hide bodies from a camera. Grounds do not, and plates can be seen through.
-fn can_hide(obstacles: &[Obstacle]) -> bool {
-    obstacles.iter().any(|obstacle| !obstacle.shape.is_half_space())
 }
