@@ -164,7 +164,7 @@ fn most_steps(run: &Run) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Limits;
+    use crate::runner::tests::read;
 
     fn cause(more: &str, run: &str) -> (Cause, Divergence) {
         let text = format!(
@@ -176,7 +176,7 @@ mod tests {
             name = 'run'
             {run}"
         );
-        let scene = Scene::parse(&text, "small.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let scene = read(&text);
         let mut world = scene.world(0);
         let mut sound = world.state().clone();
         while world.status() == Status::Ok {

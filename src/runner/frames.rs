@@ -346,9 +346,8 @@ mod tests {
 
     #[test]
     fn progress_that_cannot_be_is_refused() {
-        use crate::scene::{Limits, Scene};
         use crate::sim::{Divergence, Status};
-        let scene = Scene::parse(crate::internals::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
+        let scene = crate::runner::tests::read(crate::internals::untrusted::SCENE);
         let begun = || Frames::new(Runner::new(&scene, &[0, 1]), &[2, 4], None);
         let resumed = |step, part, element| {
             let mut progress = begun().progress().unwrap().unwrap();

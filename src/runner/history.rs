@@ -201,25 +201,7 @@ mod tests {
     use super::*;
     use crate::look::Plot;
     use crate::runner::Runner;
-    use crate::scene::Limits;
-
-    fn scene(duration: &str, rate: &str, step: &str) -> Scene {
-        let text = format!(
-            "gravity = [0, -9.8, 0]
-            time = {{ duration = {duration}, frames_per_second = {rate} }}
-            body.lattice = {{ cells = [2, 1, 1], side = 0.1 }}
-            body.velocity = [0, -2, 0]
-            obstacle = [{{ kind = 'floor', restitution = 0.5 }}]
-            [[run]]
-            name = 'shape'
-            model = {{ kind = 'shape-based', stiffness = 1e4 }}
-            [[run]]
-            name = 'springs'
-            model = {{ kind = 'mass-spring', stiffness = 1e4 }}
-            step = '{step}'"
-        );
-        Scene::parse(&text, "small.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
-    }
+    use crate::runner::tests::{read, scene};
 
     #[test]
     fn every_frame_is_in_it_with_moments_between_them() {
@@ -338,8 +320,7 @@ mod tests {
                 name = 'shape'
                 model = {{ kind = 'shape-based', stiffness = 1e4 }}"
             );
-            let scene = Scene::parse(&text, "small.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-            History::new(&scene, &[0]).series.remove(0)
+            History::new(&read(&text), &[0]).series.remove(0)
         };
         let all = history(&bodies);
         assert_eq!((all.of_bodies.len(), all.diagnostics.len()), (2, all.times.len()));

@@ -458,25 +458,35 @@ mod tests {
     use super::*;
     use crate::scene::Limits;
 
-    /// Two runs with different time steps.
-    const SCENE: &str = "
-        gravity = [0, -9.8, 0]
-        time = { duration = 0.1, frames_per_second = 20 }
-        body.lattice = { cells = [2, 1, 1], side = 0.1 }
-        body.velocity = [0, -2, 0]
-        obstacle = [{ kind = 'floor', restitution = 0.5 }]
-        [[run]]
-        name = 'shape'
-        model = { kind = 'shape-based', stiffness = 1e4 }
-        [[run]]
-        name = 'springs'
-        model = { kind = 'mass-spring', stiffness = 1e4 }
-        step = 'T/70'
-    ";
+    pub(super) fn read(text: &str) -> Scene {
+        Scene::parse(text, "small.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Two runs, of which the second has a time step of its own.
+    fn text(duration: &str, rate: &str, step: &str) -> String {
+        format!(
+            "gravity = [0, -9.8, 0]
+            time = {{ duration = {duration}, frames_per_second = {rate} }}
+            body.lattice = {{ cells = [2, 1, 1], side = 0.1 }}
+            body.velocity = [0, -2, 0]
+            obstacle = [{{ kind = 'floor', restitution = 0.5 }}]
+            [[run]]
+            name = 'shape'
+            model = {{ kind = 'shape-based', stiffness = 1e4 }}
+            [[run]]
+            name = 'springs'
+            model = {{ kind = 'mass-spring', stiffness = 1e4 }}
+            step = '{step}'"
+        )
+    }
+
+    pub(super) fn scene(duration: &str, rate: &str, step: &str) -> Scene {
+        read(&text(duration, rate, step))
+    }
 
     #[test]
     fn the_way_to_a_frame_may_be_cut_up() {
-        let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
+        let scene = scene("0.1", "20", "T/70");
         let mut whole = Runner::new(&scene, &[0, 1]);
         let whole: Vec<Frame> = (0..=2).map(|index| whole.frame(index)).collect();
         for slice in [1, 3, 1000] {
@@ -497,7 +507,7 @@ mod tests {
 
     #[test]
     fn frames_that_wait_for_the_time_series_are_the_same() {
-        let scene = Scene::parse(SCENE, "small.toml", &Limits::default()).unwrap();
+        let scene = scene("0.1", "20", "T/70");
         let take = |whole_series: bool, slice: u64| {
             let runner = Runner::new(&scene, &[0, 1]).with_time_series(&Plot::diagnostics()[..]);
             let waiting = whole_series.then(|| growing::Growing::new(tempfile::tempfile().unwrap()));
@@ -531,9 +541,10 @@ mod tests {
     /// Processor time is measured on each helper thread, too.
     #[test]
     fn each_thread_that_was_lent_is_asked() {
-        let large = SCENE.replace("[2, 1, 1]", "[20, 20, 20]");
-        for (text, threads) in [(SCENE, [0, 0]), (&large, [1, 3])] {
-            let scene = Scene::parse(text, "large.toml", &Limits::default()).unwrap();
+        let small = text("0.1", "20", "T/70");
+        let large = small.replace("[2, 1, 1]", "[20, 20, 20]");
+        for (text, threads) in [(small, [0, 0]), (large, [1, 3])] {
+            let scene = read(&text);
             for (runs, helpers) in [(&[0, 1][..], 2 * threads[0]), (&[0], threads[1])] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
                 let asked = std::sync::Mutex::new(std::collections::HashSet::new());
