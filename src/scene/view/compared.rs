@@ -28,10 +28,22 @@ pub(super) fn run(name: &str, more: &[&str], here: &Here<'_>, scene: &Scene) -> 
     let run = scene.runs.iter().position(|known| known.name == name);
     let run = run.or_else(|| unknown(name, more, here, scene))?;
     let one = &scene.runs[run];
+    // A recording is compared with the moments nearest to its own.
+    let is_simulated = |run: &Run| !run.models.is_empty();
+    let has_other_steps = |other: &&Run| is_simulated(one) && is_simulated(other) && one.step != other.step;
     if let Some(other) = scene.runs.iter().find(|other| other.of != one.of) {
-        other_bodies([one, other], here);
-    } else if let Some(other) = scene.runs.iter().find(|other| have_other_steps(one, other)) {
-        other_steps([one, other], here);
+        let [one, other] = [one, other].map(|run| quoted(&run.name));
+        let message = format!("{one} and {other} have different bodies, so their nodes cannot be compared");
+        here.wrong(message, "give all runs of the scene the same bodies, or compare none");
+    } else if let Some(other) = scene.runs.iter().find(has_other_steps) {
+        let message = format!(
+            "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",
+            quoted(&one.name),
+            short(one.step),
+            quoted(&other.name),
+            short(other.step)
+        );
+        here.wrong(message, "give both runs the same `step`");
     }
     Some(run)
 }
@@ -71,28 +83,4 @@ fn unknown<T>(name: &str, more: &[&str], here: &Here<'_>, scene: &Scene) -> Opti
     };
     here.wrong(format!("there is no run {}", quoted(name)), help);
     None
-}
-
-/// Reports runs with different bodies.
-fn other_bodies(runs: [&Run; 2], here: &Here<'_>) {
-    let [one, other] = runs.map(|run| quoted(&run.name));
-    let message = format!("{one} and {other} have different bodies, so their nodes cannot be compared");
-    here.wrong(message, "give all runs of the scene the same bodies, or compare none");
-}
-
-/// Whether two runs are simulated with different steps. A recording is compared with the moments nearest to its own.
-fn have_other_steps(one: &Run, other: &Run) -> bool {
-    [one, other].iter().all(|run| !run.models.is_empty()) && one.step != other.step
-}
-
-/// Reports runs with different steps: their frames show different moments.
-fn other_steps([one, other]: [&Run; 2], here: &Here<'_>) {
-    let message = format!(
-        "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",
-        quoted(&one.name),
-        short(one.step),
-        quoted(&other.name),
-        short(other.step)
-    );
-    here.wrong(message, "give both runs the same `step`");
 }
