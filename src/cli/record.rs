@@ -311,7 +311,7 @@ impl<'a> Session<'a> {
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
-                let path = stored.path().to_owned();
+                let path = stored.path.clone();
                 let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&path))?;
                 return Ok(Simulation { frames, ahead: false, notes: false, noted, is_stored: true });
             }

@@ -1,5 +1,6 @@
 //! Values that a command sets in place of values in a file: `run[0].model.stiffness=1e4`.
 
+use super::beside;
 use super::collector::Collector;
 use super::words::{found, list, nearest, quoted, shortened};
 use std::borrow::Cow;
@@ -127,9 +128,6 @@ impl Wrong {
     }
 }
 
-/// A message and help.
-type Told = (String, Option<String>);
-
 /// The value of a key in the table at `here`. A missing one is created, as an array or a table according to the next
 /// part of the key.
 fn in_table<'s, 't>(
@@ -138,7 +136,7 @@ fn in_table<'s, 't>(
     span: Range<usize>,
     then_array: bool,
     here: impl Fn() -> &'s str,
-) -> Result<&'s mut Spanned<DeValue<'t>>, Told> {
+) -> Result<&'s mut Spanned<DeValue<'t>>, beside::Wrong> {
     let what = found(slot.get_ref());
     let DeValue::Table(table) = slot.get_mut() else {
         let is_array = what.starts_with("an array");
@@ -158,7 +156,7 @@ fn in_array<'s, 't>(
     slot: &'s mut Spanned<DeValue<'t>>,
     part: &Segment,
     here: &str,
-) -> Result<&'s mut Spanned<DeValue<'t>>, Told> {
+) -> Result<&'s mut Spanned<DeValue<'t>>, beside::Wrong> {
     let what = found(slot.get_ref());
     let DeValue::Array(entries) = slot.get_mut() else {
         return Err((format!("`{here}` is {what}; expected an array"), None));

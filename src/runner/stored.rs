@@ -9,7 +9,8 @@ use std::sync::Arc;
 /// The stored states of some runs.
 #[derive(Debug)]
 pub(crate) struct Stored {
-    path: PathBuf,
+    /// The file.
+    pub(crate) path: PathBuf,
     pub(super) recordings: Vec<Arc<Recorded>>,
     pub(super) history: Option<History>,
     /// The rows between frames of each run, by its number in the scene.
@@ -17,11 +18,6 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// The file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Opens the states of some frames and runs of a scene, if the file has everything that their pictures need.
     ///
     /// # Errors
