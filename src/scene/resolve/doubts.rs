@@ -4,7 +4,7 @@ use super::Typed;
 use crate::look::{View, font};
 use crate::reading::captions::rounded;
 use crate::reading::collector::Collector;
-use crate::reading::words::{count, ends, quoted, short};
+use crate::reading::words::{count, ends, list, quoted, short};
 use crate::scene::file::{MotionPath, Positive, SceneFile, ShapeFile};
 use crate::scene::mesh::longest;
 use crate::scene::plausible::LONG;
@@ -53,18 +53,17 @@ fn warn_of_missing_letters(scene: &Scene, report: &Collector<'_>) {
     for (here, text) in around.chain(runs) {
         let missing = font::missing(&look.font, text);
         let letter = |&letter: &char| format!("{} (U+{:04X})", quoted(&letter.to_string()), u32::from(letter));
-        let (letters, what) = match &missing[..] {
-            [] => continue,
-            [one] => (letter(one), "its code is drawn in its place".to_owned()),
-            [all @ .., last] if all.len() < 5 => {
-                let all: Vec<_> = all.iter().map(letter).collect();
-                (format!("{} and {}", all.join(", "), letter(last)), "their codes are drawn in their place".to_owned())
-            }
-            [first, second, others @ ..] => (
-                format!("{}, {} and {} other characters", letter(first), letter(second), others.len()),
-                "their codes are drawn in their place".to_owned(),
-            ),
+        let mut letters: Vec<_> = missing.iter().map(letter).collect();
+        let what = match letters.len() {
+            0 => continue,
+            1 => "its code is drawn in its place",
+            _ => "their codes are drawn in their place",
         };
+        if letters.len() > 5 {
+            let others = letters.split_off(2).len();
+            letters.push(format!("{others} other characters"));
+        }
+        let letters = list(&letters, "and", str::to_owned);
         let help = "write it in other letters, or give a `view.font` that has them";
         here.warn(format!("no font has {letters}, so that {what}"), help);
     }
