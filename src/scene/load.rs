@@ -12,7 +12,7 @@ use super::schema::SCHEMA;
 use super::structure::Checked;
 use super::{Mistake, Mistakes, Scene, structure, syntax};
 use crate::reading::beside::{in_folders, similar};
-use crate::reading::collector::Collector;
+use crate::reading::collector::{Collector, mistake};
 use crate::reading::setting::{Setting, Wrong};
 use crate::reading::source::Source;
 #[cfg(feature = "render")]
@@ -105,8 +105,7 @@ impl Scene {
             let place = setting.key().to_owned();
             let message = format!("`{place}` is in memory or contains what is, and cannot be set");
             let help = Some("make a scene with another list".to_owned());
-            let (line, column, excerpt, marked) = Default::default();
-            let found = vec![Mistake { line, column, place, message, help, excerpt, marked }];
+            let found = vec![Mistake { place, ..mistake(None, 0..0, &[], message, help) }];
             return Err(SceneError::Mistakes(Mistakes { file: name.clone(), found, total: 1 }));
         }
         Self::read(Document { text, name, settings, lists: Some(lists) }, Path::new(""), limits)

@@ -84,8 +84,9 @@ impl<'a> Meter<'a> {
         let ways = |moved: &Option<Moved<'_>>| moved.as_ref().map_or_else(Vec::new, |moved| moved.ways(time, position));
         let all: Vec<f64> = match self.plot {
             Measure::Displacement => ways(&self.moved).into_iter().map(size).collect(),
+            _ if self.exerting.is_empty() || forces.is_empty() => vec![size(DVec3::NAN)],
             force => {
-                let [exerted, torque] = exerted(&self.exerting, forces, self.on);
+                let [exerted, torque] = sum(forces.iter().filter(|one| self.exerting.contains(&one.from)), self.on);
                 vec![size(if force == Measure::Force { exerted } else { torque })]
             }
         };
@@ -97,14 +98,6 @@ impl<'a> Meter<'a> {
             against: size(against.iter().sum::<DVec3>() / against.len() as f64),
         }
     }
-}
-
-/// The force (N) and the torque about the origin (N m) of some things on a body, or on all; NaN if they are not known.
-fn exerted(from: &[Source], forces: &[Reaction], on: Option<usize>) -> [DVec3; 2] {
-    if from.is_empty() || forces.is_empty() {
-        return [DVec3::NAN; 2];
-    }
-    sum(forces.iter().filter(|one| from.contains(&one.from)), on)
 }
 
 /// The sums of forces (N) and of torques (N m) on a body, or on all.

@@ -119,11 +119,8 @@ fn check_start(obstacle: &Obstacle, body: &SceneBody, here: &Here<'_>) {
         let (contact, _) = placed.contact(at)?;
         (contact.depth > TOUCHING * body.body.extent()).then_some((node, contact.depth))
     });
-    let deepest = depths.fold(None, |deepest: Option<(usize, f64)>, this| match deepest {
-        Some(other) if other.1 >= this.1 => Some(other),
-        _ => Some(this),
-    });
-    if let Some((node, depth)) = deepest {
+    // The first of equals.
+    if let Some((node, depth)) = depths.reduce(|deepest, this| if this.1 > deepest.1 { this } else { deepest }) {
         let below = quantity(depth, "m");
         let message = format!("{of} starts inside this {name}: node {node} lies {below} below its surface");
         let help = match obstacle.shape {
