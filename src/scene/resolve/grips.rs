@@ -44,11 +44,10 @@ impl SceneGrip<'_> {
     }
 }
 
-/// The constraints, `hold` first, or `None` after reporting every mistake in them.
-pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec<SceneGrip<'s>>> {
-    let (mut all, holds, grabs) = (Vec::new(), &scene.file.hold, &scene.file.grab);
-    let dimension = bodies.first()?.body.dimension();
-    for (here, typed) in scene.each("hold", holds) {
+/// The constraints, `hold` first, without those with mistakes, which are reported.
+pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Vec<SceneGrip<'s>> {
+    let mut all = Vec::new();
+    for (here, typed) in scene.each("hold", &scene.file.hold) {
         let until = typed.until.unwrap_or(f64::INFINITY);
         let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&here, "nodes"));
         if until <= typed.from {
@@ -59,7 +58,7 @@ pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec
             all.push(SceneGrip { here, nodes, from: typed.from, until, motion: Motion::Still });
         }
     }
-    for (here, typed) in scene.each("grab", grabs) {
+    for (here, typed) in scene.each("grab", &scene.file.grab) {
         let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&here, "nodes"));
         let path = here.to("path");
         if typed.path.repeat {
@@ -67,7 +66,7 @@ pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec
             path.to("repeat").wrong_key(message, "remove `repeat`");
             continue;
         }
-        let motion = motion::keys(&typed.path, dimension, &path);
+        let motion = motion::keys(&typed.path, bodies[0].body.dimension(), &path);
         let [from, until] =
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
         if typed.path.keys.len() == 1 {
@@ -79,7 +78,7 @@ pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec
         }
     }
     check_overlaps(&all, bodies);
-    (all.len() == holds.len() + grabs.len()).then_some(all)
+    all
 }
 
 /// Reports constraints that are shorter than a time step (s), which would have no effect.

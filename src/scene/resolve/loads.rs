@@ -37,16 +37,15 @@ impl SceneLoad<'_> {
     }
 }
 
-/// The loads, or `None` after reporting every mistake in them.
-pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Option<Vec<SceneLoad<'s>>> {
+/// The loads, without those with mistakes, which are reported.
+pub(super) fn resolve<'s>(scene: &Typed<'s>, bodies: &[SceneBody]) -> Vec<SceneLoad<'s>> {
     let load = |(here, typed): (Here<'s>, _)| {
         let reading = Reading { typed, here: here.clone(), bodies };
         let (course, kind) = (reading.course(), reading.kind());
         let kind = kind?;
         Some(SceneLoad { on: reading.borne(&kind)?, kind, course: course?, here })
     };
-    let all: Vec<_> = scene.each("load", &scene.file.load).filter_map(load).collect();
-    (all.len() == scene.file.load.len()).then_some(all)
+    scene.each("load", &scene.file.load).filter_map(load).collect()
 }
 
 /// Reports loads that are shorter than a time step (s), which would have no effect.

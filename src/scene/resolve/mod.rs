@@ -147,10 +147,8 @@ impl<'a> Typed<'a> {
         };
         let dimension = self.dimension(&typed);
         let bodies = bodies(typed, &choices, limits);
-        let gravity = match (&file.gravity, dimension) {
-            (Some(typed), Some(dimension)) => vector(typed, dimension, &report.to("gravity")),
-            _ => Some(DVec3::ZERO),
-        };
+        let gravity = file.gravity.as_ref().zip(dimension);
+        let gravity = gravity.and_then(|(typed, dimension)| vector(typed, dimension, &report.to("gravity")));
         // Where bodies start is not known without all of their keys.
         let sound: Vec<_> = bodies.iter().flatten().filter(|_| !flawed.contains("body")).collect();
         contact::check_obstacle_names(self);
@@ -162,17 +160,16 @@ impl<'a> Typed<'a> {
         if let (Some(bodies), Some(obstacles), Some(contacts)) = (&mut bodies, &obstacles, &contacts) {
             contact::separate(self, bodies, obstacles, contacts, &choices);
         }
-        let grips = bodies.as_ref().and_then(|bodies| grips::resolve(self, bodies));
-        let loads = bodies.as_ref().and_then(|bodies| loads::resolve(self, bodies));
-        let probes = bodies.as_ref().and_then(|bodies| probes::resolve(self, bodies));
+        let grips = bodies.as_ref().map(|bodies| grips::resolve(self, bodies)).unwrap_or_default();
+        let loads = bodies.as_ref().map(|bodies| loads::resolve(self, bodies)).unwrap_or_default();
+        let probes = bodies.as_ref().map(|bodies| probes::resolve(self, bodies)).unwrap_or_default();
         if let Some(time) = file.time.as_ref().filter(|_| !flawed.contains("time")) {
             check_frames(time, report);
         }
         choice::check_names(["run", "runs"], self.each("run", &file.run).map(|(here, run)| (here, Some(&*run.name))));
         let runs = bodies.as_ref().and_then(|bodies| {
-            let (grips, loads) = (grips.as_deref().unwrap_or_default(), loads.as_deref().unwrap_or_default());
-            loads::warn_of_held(loads, grips);
-            runs::Resolved { scene: self, choices: &choices, bodies, grips, loads }.runs(recordings)
+            loads::warn_of_held(&loads, &grips);
+            runs::Resolved { scene: self, choices: &choices, bodies, grips: &grips, loads: &loads }.runs(recordings)
         });
         let (runs, own) = runs.unzip();
         bodies.iter_mut().zip(own).for_each(|(bodies, own)| bodies.extend(own));
@@ -182,7 +179,7 @@ impl<'a> Typed<'a> {
             runs: runs.unwrap_or_default(),
             obstacles: obstacles?,
             contacts,
-            probes: probes.unwrap_or_default(),
+            probes,
             ..self.bare(name)
         };
         Some((scene, files))

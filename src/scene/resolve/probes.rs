@@ -8,8 +8,8 @@ use crate::reading::words::quoted;
 use crate::scene::file::ProbeFile;
 use crate::scene::{Probe, SceneBody};
 
-/// The probes, or `None` after reporting every mistake in them.
-pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Vec<Probe>> {
+/// The probes, without those with mistakes, which are reported.
+pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Vec<Probe> {
     let typed = || scene.each("probe", &scene.file.probe);
     check_names(["probe", "probes"], typed().map(|(here, probe)| (here, Some(&*probe.name))));
     let others = obstacles::names(scene.file);
@@ -28,6 +28,5 @@ pub(super) fn resolve(scene: &Typed<'_>, bodies: &[SceneBody]) -> Option<Vec<Pro
         let nodes = select(typed.body.as_deref(), Some(&typed.nodes), bodies, (&here, "nodes"))?;
         Some(Probe { name: typed.name.clone(), nodes })
     };
-    let all: Vec<_> = typed().filter_map(probe).collect();
-    (all.len() == scene.file.probe.len()).then_some(all)
+    typed().filter_map(probe).collect()
 }
