@@ -3,9 +3,7 @@
 use super::{Run, Scene};
 use crate::reading::words::{quoted, short};
 use crate::sim::Integrator;
-use crate::sim::model::ElasticModel;
 use crate::sim::stability::{Restraint, Stability};
-use std::sync::Arc;
 
 impl Scene {
     /// What keeps nodes of a run from vibrating.
@@ -53,13 +51,13 @@ impl Scene {
     /// The message and remedy for a run whose step makes a body much softer than its model says, as `xpbd` does.
     pub(super) fn softened(&self, number: usize) -> Option<[String; 2]> {
         const MUCH: f64 = 0.1;
-        let Run { name, bodies, models, step, of, .. } = &self.runs[number];
-        let softening = |(model, body): (&Arc<dyn ElasticModel>, _)| {
-            model.projection(body).map_or(0.0, |projection| projection.softening(*step) - 1.0)
-        };
-        let of_each = models.iter().zip(bodies.bodies()).map(softening);
+        let run = &self.runs[number];
+        let Run { name, step, of, .. } = run;
+        let of_each = run
+            .models_and_bodies()
+            .map(|(model, body)| model.projection(body).map_or(0.0, |projection| projection.softening(*step) - 1.0));
         let (body, excess) = of_each.enumerate().max_by(|one, other| one.1.total_cmp(&other.1))?;
-        if self.runs[number].recording.is_some() || excess <= MUCH {
+        if run.recording.is_some() || excess <= MUCH {
             return None;
         }
         let body = if of.len() > 1 { format!(" of {}", quoted(&self.bodies[of[body]].name)) } else { String::new() };
@@ -97,7 +95,6 @@ impl Scene {
 
     /// Whether a body of a run has no damping.
     fn is_undamped(&self, run: &Run) -> bool {
-        let mut parts = run.models.iter().zip(run.bodies.bodies());
-        self.mass_damping == 0.0 && parts.any(|(model, body)| !model.prepare(body).is_damped())
+        self.mass_damping == 0.0 && run.models_and_bodies().any(|(model, body)| !model.prepare(body).is_damped())
     }
 }

@@ -21,8 +21,7 @@ impl Scene {
                 World::recorded(bodies, run.initial.clone(), self.gravity, run.step, player)
             }
             None => {
-                let models = run.models.iter().map(|model| &**model);
-                let parts: Vec<_> = bodies.iter().map(Arc::clone).zip(models).collect();
+                let parts: Vec<_> = run.models_and_bodies().map(|(model, body)| (Arc::clone(body), model)).collect();
                 World::of_parts(&parts, run.initial.clone(), surroundings, stepping)
             }
         };

@@ -8,7 +8,7 @@ use crate::scene::file::{FillFile, LARGEST, Positive, Up};
 use crate::scene::limits::Limits;
 use crate::scene::mesh::{self, CELLS, MeshFile};
 use crate::sim::{Dimension, IndexLists};
-use localshape_mesh::{Cage, Fill, Mesh, Surface, Volume, fill};
+use localshape_mesh::{Cage, Mesh, Surface, Volume, fill};
 use std::path::Path;
 
 /// The mesh of a body in a folder, or `None` after reporting its mistakes.
@@ -96,7 +96,10 @@ fn filled<'a>(surface: &Surface, longest: f64, table: &BodyTable<'a>, most: u64)
     let (name, here) = (table.mesh(), table.here.to("mesh"));
     check_mass(table)?;
     let typed = table.file.fill.clone().unwrap_or_default();
-    let (chosen, side) = chosen(&typed, longest);
+    let side = match typed.side {
+        Some(Positive(side)) => side,
+        None => longest / f64::from(typed.cells.unwrap_or(CELLS)),
+    };
     if side > longest {
         let typed = table.here.to("fill").to("side");
         let message = format!("`{typed}` is longer than `{name}`, which is {} m long", short(longest));
@@ -104,7 +107,7 @@ fn filled<'a>(surface: &Surface, longest: f64, table: &BodyTable<'a>, most: u64)
     }
     let limited = most < u64::from(u32::MAX);
     let most = usize::try_from(most).unwrap_or(usize::MAX).min(u32::MAX as usize);
-    let filled = match fill(surface, chosen, most) {
+    let filled = match fill(surface, typed.with.with_side(side), most) {
         Ok(filled) => filled,
         Err(error) => {
             let help = error.fitting.map_or(error.help, |side| Some(fewer(&typed, side, longest, limited)));
@@ -127,15 +130,6 @@ fn filled<'a>(surface: &Surface, longest: f64, table: &BodyTable<'a>, most: u64)
     let help = || "join them in the program that made it".to_owned();
     warn_of_parts(nodes.len(), elements, help, table);
     Some(Content::Filled(Box::new(filled), side))
-}
-
-/// The fill that a scene asks for, and the length of its edges (m).
-fn chosen(typed: &FillFile, longest: f64) -> (Fill, f64) {
-    let side = match typed.side {
-        Some(Positive(side)) => side,
-        None => longest / f64::from(typed.cells.unwrap_or(CELLS)),
-    };
-    (typed.with.with_side(side), side)
 }
 
 /// How to fill a body of a length (m) with few enough elements: with those of a side (m), or with more allowed if they are limited.
