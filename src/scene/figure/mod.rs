@@ -10,7 +10,7 @@ mod sheet;
 use super::Scene;
 use super::error::SceneError;
 use super::limits::Limits;
-use super::load::{self, Document, stem};
+use super::load::{self, Document};
 use super::schema::schema_of;
 use crate::look::{Plot, Print, Style, Theme};
 use crate::reading::setting::Setting;
@@ -178,13 +178,8 @@ impl Figure {
         folder: &Path,
         scene: &dyn Fn(&Path) -> Result<Scene, SceneError>,
     ) -> Result<Self, SceneError> {
-        let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
         load::checked(Document { text, name, settings: &[], lists: None }, &SCHEMA, load::SCENE, |checked, report| {
-            let mut figure = resolve::resolve(checked, &stem, folder, scene, report)?;
-            if let Some(print) = figure.as_mut().and_then(|figure| figure.print.as_mut()) {
-                print.file = name.to_owned();
-            }
-            Ok(figure)
+            resolve::resolve(checked, name, folder, scene, report)
         })
     }
 }

@@ -2,8 +2,10 @@
 
 use super::file::FigureFile;
 use super::{Content, Figure, Forces, Sheet};
+use crate::look::Print;
 use crate::look::print::{unit, unit_of_sheet};
 use crate::reading::collector::{Collector, Here};
+use crate::scene::load::stem;
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
 use serde::Deserialize;
@@ -16,7 +18,7 @@ const LEAST_SIDE: u32 = 64;
 
 type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
 
-/// The figure of a checked file.
+/// The figure of a checked file with a name.
 pub(super) fn resolve(
     checked: Checked,
     name: &str,
@@ -68,11 +70,11 @@ pub(super) fn resolve(
     };
     let look = super::look(first, file.theme, text_scale);
     Ok(Some(Figure {
-        name: name.to_owned(),
+        name: stem(Path::new(name)).unwrap_or_else(|| "figure".into()),
         title: file.title.unwrap_or_default(),
         caption: file.caption.unwrap_or_default(),
         size,
-        print,
+        print: print.map(|print| Print { file: name.to_owned(), ..print }),
         look,
         content,
     }))
