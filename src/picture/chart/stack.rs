@@ -64,32 +64,7 @@ impl Quantity {
     ) -> Self {
         let (scene, plot) = (of_scenes[0].0, &charts[at]);
         let diagnostic = plot.diagnostic();
-        let one = |(scene, history): &(&Scene, &History), name: &str| {
-            let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
-            own.map(|own| Series::new(charts, at, own, scene, series::style(charts, own.run, scene, writer.palette)))
-        };
-        let of_run = |run: usize| {
-            let name = &scene.runs[run].name;
-            let mean = Series::mean(of_scenes.iter().filter_map(|of_scene| one(of_scene, name)).collect());
-            mean.map(|mean| Series { name: label(&mean.name), ..mean })
-        };
-        let mut series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
-        let runs = if let Plot::ByBody(all) = plot {
-            let of_bodies = |(own, run): (_, Series)| {
-                let bodies: Vec<_> = Series::of_bodies(all.plot, own, (scene, &run.name), writer.palette).collect();
-                if bodies.is_empty() { vec![run] } else { bodies }
-            };
-            let of_runs: Vec<Vec<Series>> = of_scenes[0].1.series.iter().zip(series).map(of_bodies).collect();
-            series = by_turns(of_runs);
-            // Curves of one colour differ in dashes, whichever run they are of.
-            for at in 0..series.len() {
-                let alike = series[..at].iter().filter(|other| other.style.colour == series[at].style.colour).count();
-                series[at].style.dash = writer.palette.dash(THIN_DASHES[alike % THIN_DASHES.len()]);
-            }
-            0
-        } else {
-            series.len()
-        };
+        let (mut series, runs) = all_series(at, charts, of_scenes, writer, label);
         let counted = diagnostic.filter(|one| matches!(one, Diagnostic::TurnedOver | Diagnostic::Broken));
         let in_parts = counted.map(|counted| match plot {
             // Bodies have other numbers of parts than their run.
@@ -192,6 +167,45 @@ impl Quantity {
             writer.left(text, Weight::Regular, SMALL * unit, palette.second_text, left, baseline);
         }
     }
+}
+
+/// The series of a chart at a place among others, one for each run, with the number of runs; with each body by itself one for each of them,
+/// and 0.
+fn all_series(
+    at: usize,
+    charts: &[Plot],
+    of_scenes: &[(&Scene, &History)],
+    writer: &Writer<'_>,
+    label: impl Fn(&str) -> String,
+) -> (Vec<Series>, usize) {
+    let (scene, plot) = (of_scenes[0].0, &charts[at]);
+    let one = |(scene, history): &(&Scene, &History), name: &str| {
+        let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
+        own.map(|own| Series::new(charts, at, own, scene, series::style(charts, own.run, scene, writer.palette)))
+    };
+    let of_run = |run: usize| {
+        let name = &scene.runs[run].name;
+        let mean = Series::mean(of_scenes.iter().filter_map(|of_scene| one(of_scene, name)).collect());
+        mean.map(|mean| Series { name: label(&mean.name), ..mean })
+    };
+    let mut series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
+    let runs = if let Plot::ByBody(all) = plot {
+        let of_bodies = |(own, run): (_, Series)| {
+            let bodies: Vec<_> = Series::of_bodies(all.plot, own, (scene, &run.name), writer.palette).collect();
+            if bodies.is_empty() { vec![run] } else { bodies }
+        };
+        let of_runs: Vec<Vec<Series>> = of_scenes[0].1.series.iter().zip(series).map(of_bodies).collect();
+        series = by_turns(of_runs);
+        // Curves of one colour differ in dashes, whichever run they are of.
+        for at in 0..series.len() {
+            let alike = series[..at].iter().filter(|other| other.style.colour == series[at].style.colour).count();
+            series[at].style.dash = writer.palette.dash(THIN_DASHES[alike % THIN_DASHES.len()]);
+        }
+        0
+    } else {
+        series.len()
+    };
+    (series, runs)
 }
 
 /// A text that begins with a capital letter.

@@ -49,7 +49,6 @@ impl Surfaces<'_> {
         }
         let seen = faces.1;
         let is_whole = |at: usize| gone.get(at).is_none_or(|gone| !gone);
-        let side = |at: usize| seen.get(at).filter(|_| is_whole(at));
         let over = over.get(fine.elements.clone()).filter(|over| over.contains(&true)).unwrap_or_default();
         let turned =
             |&mover: &u32| if over.get(mover as usize).is_some_and(|&over| over) { Turned::Yes } else { Turned::No };
@@ -79,7 +78,22 @@ impl Surfaces<'_> {
             let over = fine.triangles.iter().enumerate().filter(is_over).map(|(_, triangle)| *triangle);
             self.add_turned_over(fine, over.chain(parts(true).map(|part| part.1)), &rim, sound, turned_over, base);
         }
+        self.add_lines(fine, points, (&seen, &gone), (&turned, &rim), lines);
+    }
+
+    /// Adds the contours, creases and borders of a carried surface, by which of its triangles are seen from their front and gone, and by how
+    /// turned-over elements move them.
+    fn add_lines(
+        &self,
+        fine: &Fine,
+        points: &[DVec3],
+        (seen, gone): (&[bool], &[bool]),
+        (turned, rim): (&[Turned], &Rim),
+        lines: &mut SurfaceLines,
+    ) {
         let ends = |edge: usize| fine.edges[edge];
+        let is_whole = |at: usize| gone.get(at).is_none_or(|gone| !gone);
+        let side = |at: usize| seen.get(at).filter(|_| is_whole(at));
         let edges_where = |holds: &(dyn Fn([usize; 2]) -> bool + Sync)| -> Vec<_> {
             let holds = |beside: &[u32; 2]| holds(beside.map(|at| at as usize));
             let beside = fine.beside.par_iter().with_min_len(OF_THREAD).enumerate();

@@ -1,6 +1,6 @@
 //! The contents of a scene in words.
 
-use super::{PartSummary, RunSummary, SceneSummary, coordinates};
+use super::{BodySummary, PartSummary, RunSummary, SceneSummary, coordinates};
 use crate::reading::captions::{quantity, typed};
 use crate::reading::words::{count, ends, list, several, short};
 use crate::scene::{AtRest, Probe, Region, Rest, Run, Scene, SceneBody};
@@ -231,32 +231,76 @@ fn vector(coordinates: &[f64]) -> String {
     format!("({})", numbers.join(", "))
 }
 
+impl BodySummary {
+    /// Writes lines, each with a name.
+    fn write(&self, line: &mut impl FnMut(&str, &str) -> fmt::Result) -> fmt::Result {
+        let extent: Vec<_> = self.extent.iter().map(|&side| short(side)).collect();
+        let (extent, nodes) = (extent.join(" × "), count(self.nodes as u128));
+        let kinds = list(&self.elements, "and", |words| words.into());
+        let elements = match self.elements.len() {
+            1 => kinds,
+            _ => format!("{} elements ({kinds})", count(self.element_count as u128)),
+        };
+        let name = titled(&self.name);
+        let carried = self.carried.map(|triangles| format!(", carrying {} triangles", count(triangles as u128)));
+        let (mass, carried) = (short(self.mass), carried.unwrap_or_default());
+        line("body", &format!("{name}{nodes} nodes, {elements}, {extent} m, {mass} kg{carried}"))?;
+        let [low, high] = &self.start;
+        // Users copy regions of nodes from it, so it holds all nodes.
+        let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
+        let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
+        line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
+        if let Some(way) = &self.separated {
+            line("", &format!("moved by {} m, apart from what it overlapped", vector(way)))?;
+        }
+        self.regions.iter().try_for_each(|region| line("region", region))
+    }
+}
+
+impl RunSummary {
+    /// Writes lines, each with a name, of a run of this scene.
+    fn write(&self, scene: &SceneSummary, line: &mut impl FnMut(&str, &str) -> fmt::Result) -> fmt::Result {
+        match (&scene.bodies[..], &self.parts[..]) {
+            ([_], [PartSummary { model, .. }]) => line("run", &format!("{}: {model}", self.name))?,
+            _ => {
+                line("run", &self.name)?;
+                let part = |part: &PartSummary| line("", &format!("{}{}", titled(&part.body), part.model));
+                self.parts.iter().try_for_each(part)?;
+            }
+        }
+        if self.recorded {
+            return Ok(());
+        }
+        let (step, part) = (short(self.step), short(scene.cycle / self.step));
+        let steps = several(self.steps, "step");
+        let kernel = if self.kernel == Kernel::Reference { ", kernel reference" } else { "" };
+        let stepping = match self.tolerance {
+            Some(tolerance) => format!("tolerance {tolerance:e}"),
+            None => format!("ΔT = {step} s = T/{part}, {steps}"),
+        };
+        line("", &format!("{stepping}, {}{kernel}", self.integrator))?;
+        if let Some(Rest { residual, evaluations }) = self.rest {
+            let evaluations = several(evaluations, "evaluation");
+            line("", &format!("starts at rest: {residual:.0e} of the load is left after {evaluations}"))?;
+        }
+        if let Some(AtRest { frame, kinetic_energy, residual }) = self.comes_to_rest {
+            let time = short(frame as f64 / scene.frames_per_second);
+            let energy = quantity(kinetic_energy, "J");
+            line("", &format!("at rest from {time} s on: {energy} of motion and {residual:.0e} of the load are left"))?;
+        }
+        if self.tolerance.is_none() {
+            line("", &self.stability())?;
+            self.rebounds().iter().try_for_each(|text| line("", text))?;
+        }
+        Ok(())
+    }
+}
+
 impl fmt::Display for SceneSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = |name: &str, text: &str| writeln!(f, "  {name:<9} {text}");
         line("scene", &format!("{} ({})", self.title, self.name))?;
-        for body in &self.bodies {
-            let extent: Vec<_> = body.extent.iter().map(|&side| short(side)).collect();
-            let (extent, nodes) = (extent.join(" × "), count(body.nodes as u128));
-            let kinds = list(&body.elements, "and", |words| words.into());
-            let elements = match body.elements.len() {
-                1 => kinds,
-                _ => format!("{} elements ({kinds})", count(body.element_count as u128)),
-            };
-            let name = titled(&body.name);
-            let carried = body.carried.map(|triangles| format!(", carrying {} triangles", count(triangles as u128)));
-            let (mass, carried) = (short(body.mass), carried.unwrap_or_default());
-            line("body", &format!("{name}{nodes} nodes, {elements}, {extent} m, {mass} kg{carried}"))?;
-            let [low, high] = &body.start;
-            // Users copy regions of nodes from it, so it holds all nodes.
-            let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
-            let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
-            line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
-            if let Some(way) = &body.separated {
-                line("", &format!("moved by {} m, apart from what it overlapped", vector(way)))?;
-            }
-            body.regions.iter().try_for_each(|region| line("region", region))?;
-        }
+        self.bodies.iter().try_for_each(|body| body.write(&mut line))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         if self.mass_damping > 0.0 {
             line("damping", &format!("of masses, α = {}/s", short(self.mass_damping)))?;
@@ -266,43 +310,7 @@ impl fmt::Display for SceneSummary {
         if self.cycle.is_finite() {
             line("cycle", &format!("T = {} s", short(self.cycle)))?;
         }
-        for run in &self.runs {
-            match (&self.bodies[..], &run.parts[..]) {
-                ([_], [PartSummary { model, .. }]) => line("run", &format!("{}: {model}", run.name))?,
-                _ => {
-                    line("run", &run.name)?;
-                    let part = |part: &PartSummary| line("", &format!("{}{}", titled(&part.body), part.model));
-                    run.parts.iter().try_for_each(part)?;
-                }
-            }
-            if run.recorded {
-                continue;
-            }
-            let (step, part) = (short(run.step), short(self.cycle / run.step));
-            let steps = several(run.steps, "step");
-            let kernel = if run.kernel == Kernel::Reference { ", kernel reference" } else { "" };
-            let stepping = match run.tolerance {
-                Some(tolerance) => format!("tolerance {tolerance:e}"),
-                None => format!("ΔT = {step} s = T/{part}, {steps}"),
-            };
-            line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
-            if let Some(Rest { residual, evaluations }) = run.rest {
-                let evaluations = several(evaluations, "evaluation");
-                line("", &format!("starts at rest: {residual:.0e} of the load is left after {evaluations}"))?;
-            }
-            if let Some(AtRest { frame, kinetic_energy, residual }) = run.comes_to_rest {
-                let time = short(frame as f64 / self.frames_per_second);
-                let energy = quantity(kinetic_energy, "J");
-                line(
-                    "",
-                    &format!("at rest from {time} s on: {energy} of motion and {residual:.0e} of the load are left"),
-                )?;
-            }
-            if run.tolerance.is_none() {
-                line("", &run.stability())?;
-                run.rebounds().iter().try_for_each(|text| line("", text))?;
-            }
-        }
+        self.runs.iter().try_for_each(|run| run.write(self, &mut line))?;
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;
         }
