@@ -198,9 +198,9 @@ fn put(all: &mut Aligned, constants: &[f64], lanes: Range<usize>, elements: usiz
 impl<W: Law> General<W> {
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
-    fn pass(&self, pass: Pass, around: Around<'_>, crew: &Crew) -> Option<Lost> {
+    fn pass(&self, pass: Pass, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         let Self { law, arrays } = self;
-        let moved = Moved { arrays, pass, around, of_node: law.of_node() };
+        let moved = &Moved { arrays, pass, around, of_node: law.of_node() };
         let lost = first_lost(crew, arrays.parts.len(), |me, parts| {
             let sums = &arrays.sums[me];
             let one = |part| {
@@ -362,6 +362,6 @@ impl<W: Law> Stepper for General<W> {
 
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &Crew) -> Option<Lost> {
         self.arrays.prepare_sums(crew.threads());
-        some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
+        some.into_iter().find_map(|pass| self.pass(passes.get(pass), around, crew))
     }
 }

@@ -35,11 +35,10 @@ impl<W: Law> Work for PartForces<'_, W> {
 }
 
 /// How nodes are moved in a pass.
-#[derive(Clone, Copy)]
 pub(super) struct Moved<'a> {
     pub(super) arrays: &'a Arrays,
     pub(super) pass: Pass,
-    pub(super) around: Around<'a>,
+    pub(super) around: &'a Around<'a>,
     /// [`Law::of_node`].
     pub(super) of_node: [f64; 2],
 }
@@ -47,7 +46,7 @@ pub(super) struct Moved<'a> {
 impl<'a> Moved<'a> {
     #[inline(always)]
     fn update<L: Lanes>(&self) -> Own<'a, L> {
-        let update = NodeUpdate::<L>::new(self.pass.stage, self.arrays.step, self.pass.number, self.around);
+        let update = NodeUpdate::<L>::new(self.pass.stage, self.arrays.step, self.pass.number, *self.around);
         Own { update, of_node: self.of_node }
     }
 }
@@ -56,7 +55,7 @@ impl<'a> Moved<'a> {
 pub(super) struct OwnNodes<'a> {
     pub(super) part: usize,
     pub(super) sums: &'a Aligned,
-    pub(super) moved: Moved<'a>,
+    pub(super) moved: &'a Moved<'a>,
 }
 
 impl Work for OwnNodes<'_> {
@@ -155,7 +154,7 @@ impl<L: Lanes> Own<'_, L> {
 /// The update of the nodes that belong to several parts.
 pub(super) struct SharedNodes<'a> {
     pub(super) blocks: Range<usize>,
-    pub(super) moved: Moved<'a>,
+    pub(super) moved: &'a Moved<'a>,
 }
 
 impl Work for SharedNodes<'_> {
