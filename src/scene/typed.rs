@@ -1,8 +1,7 @@
 //! A checked file as typed parts; parts with mistakes are left out.
 
-use super::file::{ContactRule, MassDamping, SceneFile};
+use super::file::{ContactRule, MassDamping, SceneFile, TypedView};
 use super::structure::Checked;
-use super::view::TypedView;
 use crate::reading::collector::{Collector, Here};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};

@@ -26,10 +26,12 @@ pub(in crate::scene) use time::{EndFile, StartFile, StepFile, TimeFile};
 
 use crate::look::View;
 pub use crate::reading::coordinates::Coordinates;
-use crate::scene::view::TypedView;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+
+/// A `[view]` table as typed, of the right structure.
+pub(in crate::scene) type TypedView = serde_json::Map<String, serde_json::Value>;
 
 /// The largest accepted magnitude of a number (SI). Squares and volumes of larger ones leave the range of double
 /// precision.

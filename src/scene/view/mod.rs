@@ -9,17 +9,14 @@ use crate::look::print::{SizeFile, TextScaleFile, unit};
 use crate::look::typed::TypedColour;
 use crate::look::{CameraFile, ColourScale, FontFiles, Palette, View, Visible};
 use crate::reading::collector::{Collector, Here};
+use crate::scene::file::TypedView;
 use crate::scene::typed::part;
 use crate::scene::{Run, Scene};
 use crate::sim::Field;
 use serde::de::DeserializeOwned;
-use serde_json::{Map, Value as Json};
 
 /// The shortest side of a picture (px).
 const LEAST_SIDE: u32 = 16;
-
-/// A `[view]` table as typed, of the right structure.
-pub(super) type TypedView = Map<String, Json>;
 
 /// Sets a field to the value at a key of the table as typed, if there is one.
 fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, table: &Here<'_>) {
