@@ -79,26 +79,36 @@ impl Ground {
         Some(heights.fold(f64::INFINITY, f64::min) - self.law.gap)
     }
 
-    /// Lists the points that may touch the plane in a step, in order.
-    fn list(&self, near: &mut Near, surface: &Surface, [start, end]: [&[DVec3]; 2], plane: Plane) {
-        /// A share of the thickness, and of the way of a step.
-        const SKIN: [f64; 2] = [20.0, 16.0];
-        let (Self { law, obstacle, .. }, Near { points, heights, skin, .. }) = (self, near);
-        let height = |position: &[DVec3], node: u32| plane.above(position[node as usize]);
-        let nodes = &surface.nodes;
-        let far = |way: f64, now: f64, other: f64| way.max((now - other).abs());
-        let ahead = nodes.iter().fold(0.0, |way, &node| far(way, height(start, node), height(end, node)));
-        let since = nodes.iter().zip(&*heights).fold(0.0, |way, (&node, &then)| far(way, height(start, node), then));
-        if obstacle.is_still() && !heights.is_empty() && surface.lever * (since + ahead) <= *skin {
+    /// Lists the points that may touch the plane in a step, in order: a plane at its start, and at its end.
+    ///
+    /// The height of a point is a mean of those of its nodes, above a plane that moves, too. So no point moves farther, by itself or towards
+    /// the plane, than the `lever` times the farthest node. A plane that turns in the step may touch all points.
+    fn list(&self, near: &mut Near, surface: &Surface, [start, end]: [&[DVec3]; 2], planes: [Plane; 2]) {
+        /// A share of the thickness, and of the ways of a step.
+        const SKIN: [f64; 2] = [20.0, 8.0];
+        let Near { points, heights, skin, .. } = near;
+        let [plane, later] = planes;
+        let turns = plane.normal != later.normal;
+        let ways = surface.nodes.iter().map(|&node| {
+            let (here, there) = (start[node as usize], end[node as usize]);
+            (plane.above(here) - later.above(there)).abs() + plane.normal.dot(there - here).abs()
+        });
+        let ahead = ways.fold(0.0, f64::max);
+        let height = |&node: &u32| plane.above(start[node as usize]);
+        let since = surface.nodes.iter().map(height).zip(&*heights).map(|(now, then)| (now - then).abs());
+        let since = since.fold(0.0, f64::max);
+        if !turns && !heights.is_empty() && surface.lever * (since + ahead) <= *skin {
             return;
         }
         *skin = (SKIN[0] * surface.thickness).max(SKIN[1] * surface.lever * ahead);
-        let reach = if obstacle.is_still() { law.gap + *skin } else { f64::INFINITY };
+        let reach = if turns { f64::INFINITY } else { self.law.gap + *skin };
         let is_near = |&point: &u32| plane.above(surface.points.place(point as usize, start)) <= reach;
         points.clear();
         points.extend((0..surface.points.len() as u32).filter(is_near));
         heights.clear();
-        heights.extend(nodes.iter().map(|&node| height(start, node)));
+        if !turns {
+            heights.extend(surface.nodes.iter().map(height));
+        }
     }
 
     /// Finds the points that come nearer to the plane than the distance that is kept. Their feet are added to `feet`, with their motions.
@@ -110,9 +120,9 @@ impl Ground {
         interval: Interval,
         feet: &mut Vec<(DVec3, Motion)>,
     ) {
-        let plane = self.plane(interval.begin);
+        let planes @ [plane, _] = [interval.begin, interval.end].map(|time| self.plane(time));
         let [from, to] = [interval.begin, interval.end].map(|time| self.obstacle.pose(time));
-        self.list(near, surface, [start, end], plane);
+        self.list(near, surface, [start, end], planes);
         near.touches.clear();
         let Touches { all, terms } = &mut near.touches;
         for &point in &near.points {
