@@ -43,7 +43,7 @@ fn again(place: &Place, arguments: &str) -> Running {
 
 /// A scene that takes some seconds, so that a killed command leaves a checkpoint: these are written every two seconds.
 fn seconds() -> String {
-    lasting("1000").replace("cells = [2, 1, 1]", "cells = [4, 4, 4]")
+    lasting("20").replace("cells = [2, 1, 1]", "cells = [4, 4, 4]").replace("T/50", "T/5000")
 }
 
 #[test]

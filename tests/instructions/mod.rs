@@ -31,30 +31,41 @@ fn scene((lattice, model, _): (&str, &str, u64)) -> Scene {
     Scene::parse(&text, "block", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// The steps whose difference cancels the first ones.
+const STEPS: [u64; 2] = [10, 60];
+
+/// Where a count ends and the next one begins.
+#[inline(never)]
+fn count_from_here() {
+    std::hint::black_box(());
+}
+
 /// Counted in a separate process.
 #[test]
 #[ignore = "started by the other test"]
 fn steps() {
-    let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<usize>().ok());
-    let (Some(case), Some(steps)) = (number("CASE"), number("STEPS")) else { return };
-    scene(CASES[case]).world(0).advance(steps as u64);
+    for (case, steps) in CASES.into_iter().flat_map(|case| STEPS.map(|steps| (case, steps))) {
+        let mut world = scene(case).world(0);
+        count_from_here();
+        world.advance(steps);
+        count_from_here();
+    }
 }
 
-/// The number of instructions of a process with a number of steps.
-fn instructions(folder: &Path, case: usize, steps: u64) -> u64 {
-    let out = format!("--callgrind-out-file={}", folder.join("out").display());
+/// The numbers of instructions of all these steps, in their order. Each count is a file; every other one is that of a start.
+fn instructions(folder: &Path) -> Vec<u64> {
     let valgrind = Command::new("valgrind")
-        .args(["--tool=callgrind", &out])
+        .args(["--tool=callgrind", "--dump-before=*count_from_here*"])
+        .arg(format!("--callgrind-out-file={}", folder.join("out").display()))
         .arg(std::env::current_exe().expect("this test"))
         .args(["--ignored", "--exact", "instructions::steps", "--test-threads", "1"])
-        .envs([("CASE", case.to_string()), ("STEPS", steps.to_string())])
         .stdin(Stdio::null())
         .output()
         .expect("valgrind runs");
-    let told = String::from_utf8_lossy(&valgrind.stderr);
-    assert!(valgrind.status.success(), "{told}");
-    let collected = told.lines().find_map(|line| line.split("Collected :").nth(1)).expect("a count");
-    collected.trim().parse().expect("a number")
+    assert!(valgrind.status.success(), "{}", String::from_utf8_lossy(&valgrind.stderr));
+    let file = |number: usize| std::fs::read_to_string(folder.join(format!("out.{number}"))).expect("a count");
+    let total = |text: &str| text.lines().find_map(|line| line.strip_prefix("totals: ")?.parse().ok());
+    (1..=2 * CASES.len()).map(|steps| total(&file(2 * steps)).expect("a number")).collect()
 }
 
 #[test]
@@ -66,11 +77,11 @@ fn a_step_takes_no_more_instructions_than_it_did() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
+    let counted = instructions(folder.path());
     let mut slower = Vec::new();
-    for (at, case) in CASES.into_iter().enumerate() {
-        // The difference cancels the setup and the first steps.
-        let [few, many] = [10, 60].map(|steps| instructions(folder.path(), at, steps));
-        let each = (many - few) / (50 * scene(case).bodies[0].body.elements().len() as u64);
+    for (case, counted) in CASES.into_iter().zip(counted.chunks(2)) {
+        let more = (STEPS[1] - STEPS[0]) * scene(case).bodies[0].body.elements().len() as u64;
+        let each = (counted[1] - counted[0]) / more;
         println!("{each} instructions per element and step, {} at most: {}{}", case.2, case.1, case.0);
         if each > case.2 {
             slower.push((case, each));

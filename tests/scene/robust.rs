@@ -119,8 +119,12 @@ fn swapped_values() {
             let ends =
                 [after.find([',', '}', '\n', '#']), after.find([']', '\n']).map(|end| end + 1), after.find('\n')];
             let ends: BTreeSet<_> = ends.into_iter().flatten().collect();
-            for (end, value) in ends.into_iter().flat_map(|end| values.map(|value| (end, value))) {
-                read(&format!("{before}{value}{}", after.get(end..).unwrap_or_default()));
+            for (number, end) in ends.into_iter().enumerate() {
+                // All values up to the first end; up to the others they take turns.
+                let (first, every) = if number == 0 { (0, 1) } else { (at % 4, 4) };
+                for value in values.iter().skip(first).step_by(every) {
+                    read(&format!("{before}{value}{}", after.get(end..).unwrap_or_default()));
+                }
             }
         }
     }

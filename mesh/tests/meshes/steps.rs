@@ -8,7 +8,8 @@ use localshape_sim::model::ModelParameters;
 use localshape_sim::model::shape_based::{Parameters, ShapeBased};
 use localshape_sim::stability::{Restraint, Stability};
 use localshape_sim::{
-    Body, Carried, Grip, Integrator, Motion, Obstacle, Shape, Solids, State, Status, Stepping, Surroundings, World,
+    Body, Carried, Crew, Grip, Integrator, Motion, Obstacle, Shape, Solids, State, Status, Stepping, Surroundings,
+    World, equilibrium,
 };
 use std::sync::Arc;
 
@@ -66,10 +67,9 @@ fn sinking(bar: &Surface, with: Fill) -> f64 {
     let grips = vec![Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still }];
     let around = Surroundings { gravity: -DVec3::Y * gravity, grips, ..Surroundings::default() };
     let start = State::at_rest(body.rest().to_vec());
-    // Steps that are long beside the period, 0.4 s, damp it.
-    let mut world = World::new(&body, start, &*model, around, Stepping::new(Integrator::BackwardEuler, 0.5));
-    world.advance(12);
-    let sunk = body.rest().iter().zip(&world.state().position).zip(body.mass());
+    let found =
+        equilibrium(&[(Arc::clone(&body), &*model)], &start, &around, 1e-3, Crew::new(1)).expect("a state of rest");
+    let sunk = body.rest().iter().zip(&found.position).zip(body.mass());
     let sunk: f64 = sunk.map(|((rest, now), mass)| mass * (rest.y - now.y)).sum();
     sunk / body.mass().iter().sum::<f64>() / (DENSITY * gravity / (3.0 * young))
 }
