@@ -17,7 +17,7 @@ pub struct Surface {
     pub points: Vec<DVec3>,
     /// The points of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Sets of points with a name.
+    /// Sets of points with a name; empty ones, too, whose points are left out.
     pub groups: Vec<Group>,
     /// What is left out of the file or not read, each as the predicate of a sentence about it.
     pub notes: Vec<String>,

@@ -16,7 +16,7 @@ pub struct Volume {
     pub solids: Solids,
     /// The points of each cell, in the order of [`Solids::Ordered`], none turned inside out.
     pub cells: IndexLists,
-    /// Sets of points with a name.
+    /// Sets of points with a name; empty ones, too, whose points are left out.
     pub groups: Vec<Group>,
     /// The number of cells that were turned over in the file.
     pub turned: usize,

@@ -293,7 +293,13 @@ fn says_what_is_left_out_of_a_mesh() {
     let document = place.run("check kinds.inp --json").json();
     let mesh = &document["meshes"][0]["mesh"];
     assert_eq!(mesh["notes"][0], "has elements that are not read: 2 of the type SPRINGA");
-    assert_eq!(mesh["cells"]["groups"].as_array().map(Vec::len), Some(9));
+    assert_eq!(mesh["cells"]["groups"].as_array().map(Vec::len), Some(10));
+    // A group of nothing but springs.
+    let held = "time = { duration = 1 }\nbody = { mesh = 'kinds.inp', density = 1e3 }\nhold = [{ nodes = 'springs' }]\n\
+                run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e3 } }]\n";
+    place.write("held.toml", held);
+    let words = "`hold[0].nodes` is \"springs\", a group whose points belong to no element of the body";
+    place.run("check held.toml").bad(2, &[words]);
 }
 
 #[test]

@@ -30,13 +30,12 @@ impl Used {
         all.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(value, _)| *value).collect()
     }
 
-    /// The groups that have points in use.
+    /// The groups with their points in use. Those that have none stay, empty, so that who names one is told.
     pub(crate) fn groups(&self, groups: &[Group]) -> Vec<Group> {
         let group = |group: &Group| {
             let points = group.points.iter().map(|&point| self.new[point as usize]);
-            let points: Vec<u32> = points.filter(|&point| point != NONE).collect();
-            (!points.is_empty()).then(|| Group { name: group.name.clone(), points })
+            Group { name: group.name.clone(), points: points.filter(|&point| point != NONE).collect() }
         };
-        groups.iter().filter_map(group).collect()
+        groups.iter().map(group).collect()
     }
 }

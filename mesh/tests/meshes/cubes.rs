@@ -586,7 +586,8 @@ fn groups_of_points_are_groups_of_the_nodes_that_carry_them() {
     for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
         let cage = fill(&surface, with, MOST).unwrap().cage;
         let names: Vec<_> = cage.groups.iter().map(|group| &*group.name).collect();
-        assert_eq!(names, ["foot", "corner"]);
+        assert_eq!(names, ["foot", "corner", "loose"]);
+        assert!(cage.groups[2].points.is_empty());
         let places = |group: usize| cage.groups[group].points.iter().map(|&node| cage.nodes[node as usize]);
         // All nodes of the face, which is divided to follow them.
         let on_face = cage.nodes.iter().filter(|node| node.z == 0.0).count();

@@ -123,6 +123,11 @@ fn named(name: &str, bodies: &[SceneBody], here: &Here<'_>) -> Option<Vec<Vec<u3
     const NAMED: usize = 20;
     let of_body = |body: &SceneBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
     let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
+    if found.contains(&Some(Vec::new())) && found.iter().flatten().all(Vec::is_empty) {
+        let message = format!("`{here}` is {}, a group whose points belong to no element of the body", quoted(name));
+        here.wrong(message, "give the group elements, or points of theirs, in the program that made the mesh");
+        return None;
+    }
     let is_flat = bodies[0].body.dimension() == Dimension::Plane;
     let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
     let side = Side::ALL.into_iter().find(|side| typed(side) == name);
@@ -139,7 +144,8 @@ fn named(name: &str, bodies: &[SceneBody], here: &Here<'_>) -> Option<Vec<Vec<u3
         return None;
     }
     let sides: Vec<String> = Side::ALL.iter().filter(|side| is_there(side)).map(typed).collect();
-    let mut groups: Vec<&str> = bodies.iter().flat_map(|body| &body.groups).map(|group| group.name.as_str()).collect();
+    let groups = bodies.iter().flat_map(|body| &body.groups).filter(|group| !group.points.is_empty());
+    let mut groups: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
     groups.sort_unstable();
     groups.dedup();
     let known: Vec<&str> = groups.iter().copied().chain(sides.iter().map(String::as_str)).collect();

@@ -23,6 +23,7 @@ fn cells_and_sets_are_read_from_abaqus() {
         ("rows", 2),
         ("skin", 3),
         ("small", 9),
+        ("springs", 0),
     ];
     assert_eq!(groups(&found), expected);
     assert_eq!(group(&found, "Left end"), [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);

@@ -89,12 +89,17 @@ fn faces_and_lines_apart_from_the_solids_are_told() {
     let lost = "has groups whose points are all left out";
     for (more, count, names, notes) in [
         ("2 2 2 9 9 1 2 3\n3 1 2 8 8 1 4\n", 3, vec![("rod", 2), ("sheet", 3), ("vol", 4)], vec![]),
-        ("2 2 2 9 9 5 6 7\n", 2, vec![("vol", 4)], vec![format!("{beside}: 1"), format!("{lost}: `sheet`")]),
+        (
+            "2 2 2 9 9 5 6 7\n",
+            2,
+            vec![("sheet", 0), ("vol", 4)],
+            vec![format!("{beside}: 1"), format!("{lost}: `sheet`")],
+        ),
         ("2 2 2 9 9 1 6 7\n", 2, vec![("sheet", 1), ("vol", 4)], vec![format!("{beside}: 1")]),
         (
             "2 2 2 9 9 5 6 7\n3 1 2 8 8 5 6\n4 15 2 8 8 5\n",
             4,
-            vec![("vol", 4)],
+            vec![("point 8", 0), ("rod", 0), ("sheet", 0), ("vol", 4)],
             vec![format!("{beside}: 2"), format!("{lost}: `point 8`, `rod`, `sheet`")],
         ),
     ] {
