@@ -82,12 +82,19 @@ impl Layer {
                     let ends = curves.iter().map(|points| points.last().map_or(left, |end| end[0]));
                     band(writer, place, &curves, [left, ends.fold(right, f64::min)], 0.0, *colour);
                 }
+                Self::Line { points, colour, width, dash } if !goes_on(points) => {
+                    // Once, over all stretches of the axis.
+                    if *stretch == chart.x.0[0] {
+                        let at = |&[x, y]: &[f64; 2]| [place.x(&chart.x, x), place.y(&chart.y, y)];
+                        let points: Vec<_> = points.iter().map(at).collect();
+                        let ways = if dash.is_empty() { vec![points] } else { ways(&points, BESIDE * place.line) };
+                        for part in ways.iter().flat_map(|way| pieces(way, place.borders())) {
+                            writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
+                        }
+                    }
+                }
                 Self::Line { points, colour, width, dash } => {
-                    let dense = self.dense(chart, stretch, place);
-                    let points = match goes_on(points) {
-                        true => pixels(points),
-                        false => points.iter().map(|&[x, y]| [place.x(&chart.x, x), place.y(&chart.y, y)]).collect(),
-                    };
+                    let (dense, points) = (self.dense(chart, stretch, place), pixels(points));
                     let of_line = std::slice::from_ref(&points);
                     dense
                         .iter()
@@ -135,6 +142,25 @@ impl Layer {
 /// Whether a line never goes back to the left.
 fn goes_on(points: &[[f64; 2]]) -> bool {
     points.is_sorted_by(|one, other| one[0] <= other[0])
+}
+
+/// The ways of a line to the right and back, each from left to right: dashes of the way back lie on those of the way there. A way back that is
+/// shorter than a length (px) is none.
+fn ways(points: &[[f64; 2]], least: f64) -> Vec<Vec<[f64; 2]>> {
+    let (mut ways, mut first, mut farthest, mut sense) = (Vec::new(), 0, 0, 1.0);
+    for (at, [x, _]) in points.iter().enumerate() {
+        let ahead = (x - points[farthest][0]) * sense;
+        if ahead >= 0.0 {
+            farthest = at;
+        } else if -ahead > least {
+            ways.push(points[first..=farthest].to_vec());
+            (first, farthest, sense) = (farthest, at, -sense);
+        }
+    }
+    ways.push(points[first..].to_vec());
+    ways.retain(|way| way.len() > 1);
+    ways.iter_mut().filter(|way| way[0][0] > way[way.len() - 1][0]).for_each(|way| way.reverse());
+    ways
 }
 
 /// The part of a line on a stretch of the axis to the right (px), without values that have no place: infinite ones, and zero on a
@@ -300,6 +326,15 @@ mod tests {
         let points = [[0.0, 0.0], [1.0, 0.01], [2.0, f64::NAN], [3.0, f64::INFINITY], [4.0, 1.0]];
         let found = pixels(&points, &chart, &chart.x.0[0], place);
         assert!(found.len() == 2 && found[0][0] == 100.0 && found[1] == [400.0, 0.0], "{found:?}");
+    }
+
+    #[test]
+    fn ways_back_begin_at_the_left_as_ways_there_do() {
+        let line = |places: &[f64]| places.iter().map(|&x| [x, 0.0]).collect::<Vec<_>>();
+        let there_and_back = line(&[0.0, 10.0, 20.0, 19.0, 30.0, 15.0, 0.0, 12.0]);
+        let ways = ways(&there_and_back, 2.0);
+        assert_eq!(ways, [line(&[0.0, 10.0, 20.0, 19.0, 30.0]), line(&[0.0, 15.0, 30.0]), line(&[0.0, 12.0])]);
+        assert_eq!(super::ways(&line(&[9.0, 5.0, 1.0]), 2.0), [line(&[1.0, 5.0, 9.0])]);
     }
 
     #[test]
