@@ -41,7 +41,8 @@ fn again(place: &Place, arguments: &str) -> Running {
     running
 }
 
-/// A scene that takes some seconds, so that a killed command leaves a checkpoint: these are written every two seconds.
+/// A scene that takes some seconds on one thread, so that a killed command leaves a checkpoint: these are written every two seconds. It has few
+/// frames, whose states are small.
 fn seconds() -> String {
     lasting("20").replace("cells = [2, 1, 1]", "cells = [4, 4, 4]").replace("T/50", "T/5000")
 }
@@ -82,7 +83,7 @@ fn causes_of_divergences_are_kept() {
     let place = Place::new();
     let scene = seconds().replace("one-diagonal\" }", "one-diagonal\" }\nstep = \"T/2\"");
     place.write("scene.toml", &scene);
-    let typed = "simulate scene.toml -q -o out";
+    let typed = "simulate scene.toml --threads 1 -q -o out";
     stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
     place.run(&format!("{typed} --resume")).good();
     let run = place.json("out/run.json")["runs"][1].clone();
@@ -94,7 +95,7 @@ fn causes_of_divergences_are_kept() {
 fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
     let place = Place::new();
     place.write("scene.toml", &seconds());
-    let typed = "simulate scene.toml --states -o out";
+    let typed = "simulate scene.toml --threads 1 --states -o out";
     let ran = stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
     assert_eq!(ran.status, None, "killed");
     assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
@@ -249,7 +250,7 @@ fn flip(place: &Place, name: &str, length: usize, command: &str) {
 fn damage_to_what_waits_is_refused() {
     let place = Place::new();
     place.write("scene.toml", &seconds());
-    let typed = "simulate scene.toml --states -q -o out";
+    let typed = "simulate scene.toml --threads 1 --states -q -o out";
     place.run("simulate scene.toml --states -q -o whole").good();
     stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
     for (name, parts) in [(CHECKPOINT, 1), (".localshape-diagnostics.partial", 2), (".localshape-states.partial", 2)] {
